@@ -1,0 +1,17 @@
+// Finds a calibration target in a camera frame. The only place that knows OpenCV's detectors and their habits.
+#pragma once
+
+#include "calib/target/target_geometry.hpp"
+#include "hal/base/image.hpp"
+#include "hal/base/result.hpp"
+
+namespace raysteer::calib::target {
+
+/// Corners of `target` in `frame` (8 bit grey), sub-pixel, in a fixed order and handedness.
+///
+/// ChArUco corners never come from OpenCV's refinement (0.49 px bias in 4.6): ids and rough places are taken, places
+/// are refined on the image. The layout of even-rowed boards is found out when `target.layout` is kAuto.
+/// Errors: kTargetNotFound (what was seen instead, as far as it can be told), kWrongTarget, kMirroredTarget.
+Result<Detection> detect(const TargetSpec& target, ImageView<const std::uint8_t> frame);
+
+}  // namespace raysteer::calib::target

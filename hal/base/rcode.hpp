@@ -1,0 +1,111 @@
+// value: every fault Raysteer can name, and what to do about it.
+//
+// One table for the device and the laptop: the daemon's events, `raysteer explain` and docs/errors.md read it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace raysteer {
+
+/// The canonical codes that gRPC and Connect share, so that mapping to the wire is the identity.
+enum class ErrorCode {
+  kCancelled = 1,
+  kUnknown = 2,
+  kInvalidArgument = 3,
+  kDeadlineExceeded = 4,
+  kNotFound = 5,
+  kAlreadyExists = 6,
+  kPermissionDenied = 7,
+  kResourceExhausted = 8,
+  kFailedPrecondition = 9,
+  kAborted = 10,
+  kOutOfRange = 11,
+  kUnimplemented = 12,
+  kInternal = 13,
+  kUnavailable = 14,
+  kDataLoss = 15,
+  kUnauthenticated = 16,
+};
+
+/// Hundreds group by the way of the light: 1 files and sessions, 2 decoding, 3 calibration, 4 scanning, 5 the tool
+/// itself. A number is never used for another fault later.
+enum class RCode : int {
+  kNone = 0,
+
+  // 01xx files and sessions
+  kFileMissing = 101,
+  kFileUnreadable = 102,
+  kFileTruncated = 103,
+  kTomlSyntax = 104,
+  kUnknownKey = 105,
+  kMissingKey = 106,
+  kBadValue = 107,
+  kPathOutside = 108,
+  kCircularInclude = 109,
+  kFrameMissing = 110,
+  kFrameSize = 111,
+  kFrameDepth = 112,
+  kFrameFormat = 113,
+  kFormatVersion = 114,
+  kDiskFull = 115,
+  kWriteFailed = 116,
+
+  // 02xx decoding
+  kFrameCount = 201,
+  kFramesOutOfOrder = 202,
+  kFramesDoubled = 203,
+  kInverseSwapped = 204,
+  kFramesBlack = 205,
+  kFramesSaturated = 206,
+  kSceneMoved = 207,
+  kNothingDecoded = 208,
+  kBadSequence = 209,
+
+  // 03xx calibration
+  kTargetNotFound = 301,
+  kTooFewViews = 302,
+  kCoplanarViews = 303,
+  kWrongTarget = 304,
+  kMirroredTarget = 305,
+  kForeignView = 306,
+  kTargetScaleMissing = 307,
+  kCameraMovedDuringCapture = 308,
+  kSolverDiverged = 309,
+  kTooFewCorrespondences = 310,
+  kBadCalibrationFile = 311,
+  kNotFinite = 312,
+  kCameraCount = 313,
+
+  // 04xx scanning
+  kTooFewMatches = 401,
+  kPoseMoved = 402,
+  kCalibrationMismatch = 403,
+
+  // 05xx the tool itself
+  kUsage = 501,
+  kOutputExists = 502,
+  kCancelled = 503,
+  kUnknownCode = 504,
+  kNothingToReport = 505,
+};
+
+struct Explanation {
+  ErrorCode code;
+  std::string_view name;      ///< "frame-missing"
+  std::string_view sentence;  ///< literal, begins an error message
+  std::string_view cause;     ///< why it usually happens
+  std::string_view remedy;    ///< what to do next
+};
+
+/// The row of `rcode`. tools/check_rcodes.py fails when an enumerator has none.
+const Explanation& explain(RCode rcode);
+
+/// All codes in rising order, kNone left out.
+std::span<const RCode> all_rcodes();
+
+/// "R0110"
+std::string to_string(RCode rcode);
+
+}  // namespace raysteer
