@@ -1,13 +1,15 @@
 // value: what one camera saw of the projector, per camera pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "hal/base/image.hpp"
 
 namespace raysteer::calib::decode {
 
-/// Why a pixel has no projector coordinate (or a doubtful one): bits of CodeMap::mask. 0 is valid.
+/// Why a pixel has no projector coordinate: bits of CodeMap::mask. 0 is valid. kInterpolated alone keeps a coordinate.
 enum Reason : std::uint8_t {
   kValid = 0,
   kShadow = 1 << 0,         ///< white is not brighter than black: the projector does not reach it
@@ -19,12 +21,29 @@ enum Reason : std::uint8_t {
   kInterpolated = 1 << 6,  ///< has a coordinate, but from neighbours only: not a measurement
 };
 
-/// Sizes are the camera's. Axes that the sequence does not code are empty.
+/// How the frames fared as a whole.
+struct Diagnostics {
+  std::size_t pixels = 0;  ///< of the camera
+  std::size_t valid = 0;   ///< mask == kValid
+  /// Noise of one frame as it was used: variance = read_sigma_dn^2 + signal / electrons_per_dn, DN^2.
+  double read_sigma_dn = 0;
+  double electrons_per_dn = std::numeric_limits<double>::infinity();
+  /// Heterodyne axes: median distance of the period's order from an integer, in periods; NaN without.
+  double order_residual_x = std::numeric_limits<double>::quiet_NaN();
+  double order_residual_y = std::numeric_limits<double>::quiet_NaN();
+  /// Share of pixels with enough modulation and no saturation, before order and neighbours are asked.
+  double coverage = 0;
+};
+
+/// Sizes are the camera's. Axes that the sequence does not code are empty; codes only: coordinates are empty too.
 struct CodeMap {
   Image<float> x, y;                    ///< projector px, sub-pixel; NaN where `mask` says so
   Image<float> variance_x, variance_y;  ///< px^2, predicted from noise and contrast
-  Image<std::uint16_t> code_x, code_y;  ///< integer code (Gray value), kNoCode where undecided
-  Image<std::uint8_t> mask;             ///< bits of Reason
+  /// Integer Gray value as coded (stripes of the block's stripe_px), or the order of the finest period where there is
+  /// no Gray block; kNoCode where undecided.
+  Image<std::uint16_t> code_x, code_y;
+  Image<std::uint8_t> mask;  ///< bits of Reason
+  Diagnostics diagnostics;
   static constexpr std::uint16_t kNoCode = 0xffff;
 };
 
