@@ -1,0 +1,64 @@
+// bound to one thread: do the frames of one look show the sequence they are said to show?
+//
+// Looks at some hundred small tiles of each frame, so that it costs a fraction of a millisecond a frame and can run
+// beside the decoder: add() every frame in any order, then report().
+//
+// Told apart: frames all black or saturated, a frame repeated, frames in another order, pattern and inverse exchanged,
+// and a scene or camera that moved between frames. Nothing is claimed of what the tiles cannot show (a bit whose edge
+// lies outside the view, for example), so a good set is never refused for being seen only in part.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hal/base/image.hpp"
+#include "hal/base/pattern.hpp"
+#include "hal/base/result.hpp"
+
+namespace raysteer::calib::decode {
+
+/// Grey values are in levels of 255 whatever the camera's depth.
+struct SequenceReport {
+  double lit = 0;             ///< share of the samples that the projector reaches
+  double contrast = 0;        ///< median of (brightest - darkest) over the lit samples, levels
+  double saturated = 0;       ///< share of the lit samples that saturate in the brightest frame
+  double brightest = 0;       ///< 99th percentile of the brightest frame, levels
+  double codes_coherent = 1;  ///< Gray: share of code steps between neighbouring pixels that are one stripe, worst axis
+  double codes_in_panel = 1;  ///< Gray: share of codes that lie on the panel, worst axis
+  double largest_shift_px = 0;  ///< movement between groups of frames, camera px
+  double phase_residual = 0;    ///< phase: RMS departure from a sinusoid over its amplitude, worst block
+  std::vector<Error> faults;    ///< worst first: kFrameCount, kFramesBlack, kFramesSaturated, kFramesDoubled,
+                                ///< kFramesOutOfOrder, kInverseSwapped, kSceneMoved
+};
+
+class SequenceCheck {
+ public:
+  /// `bits`: 8 or 16, what a saturated pixel is. Sizes in camera px.
+  SequenceCheck(const PatternSequence& sequence, int width, int height, int bits);
+
+  /// Takes what it needs of frame `index` of the sequence. The frame has the size given to the constructor.
+  void add(int index, ImageView<const std::uint8_t> frame);
+  void add(int index, ImageView<const std::uint16_t> frame);
+
+  SequenceReport report() const;
+  /// The worst fault, if any.
+  Status verdict() const;
+
+ private:
+  struct Tile {
+    int x = 0;
+    int y = 0;
+  };
+  template <class Pixel>
+  void take(int index, ImageView<const Pixel> frame);
+
+  PatternSequence sequence_;
+  int width_ = 0;
+  int height_ = 0;
+  double level_ = 1;                                 // grey levels of 255 per unit of the files
+  std::vector<Tile> tiles_;                          // top-left corners
+  std::vector<std::vector<std::uint16_t>> samples_;  // [frame][tile, row, column]; empty: not added
+};
+
+}  // namespace raysteer::calib::decode

@@ -1,0 +1,29 @@
+// value: the smallest file a camera frame fits in: 16 bytes, then pixels (docs/session-format.md, "Raw frames").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "hal/base/image.hpp"
+#include "hal/base/result.hpp"
+
+namespace raysteer::proto::session {
+
+/// Grey pixels as a camera gives them.
+using Frame = std::variant<Image<std::uint8_t>, Image<std::uint16_t>>;
+
+/// Files begin with these bytes.
+inline constexpr std::uint8_t kRawMagic[4] = {'R', 'S', 'F', '1'};
+inline constexpr std::size_t kRawHeaderBytes = 16;
+
+/// Bytes of a raw frame. Sizes are those of the view; both sides must be 1 to 65535.
+std::vector<std::uint8_t> write_raw_frame(ImageView<const std::uint8_t> pixels);
+std::vector<std::uint8_t> write_raw_frame(ImageView<const std::uint16_t> pixels);
+
+/// Errors: kFrameFormat (not a raw frame, or bytes left over), kFileTruncated. Allocates only what the bytes fill.
+Result<Frame> read_raw_frame(std::span<const std::uint8_t> bytes);
+
+}  // namespace raysteer::proto::session
