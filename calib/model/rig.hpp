@@ -16,7 +16,7 @@ struct Device {
   std::string name;
   DeviceKind kind = DeviceKind::kCamera;
   Camera camera;
-  Pose T_device_rig;  ///< identity for the first device: the rig's frame is the first camera's
+  Pose T_device_rig{};  ///< identity for the first device: the rig's frame is the first camera's
 };
 
 /// Devices with the joint covariance of all their parameters.
@@ -35,7 +35,7 @@ struct Rig {
   int count(std::size_t device) const;
 };
 
-/// Parameters of a device in the order above (pose increments are zero).
+/// Parameters of a device in the order above (the rotation increment is zero).
 Eigen::VectorXd parameters(const Device& device, bool with_pose);
 /// A device moved by `delta` in the order above.
 Device perturbed(const Device& device, const Eigen::VectorXd& delta, bool with_pose);
