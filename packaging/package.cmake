@@ -1,0 +1,30 @@
+# cmake --build --preset release --target package: raysteer_<version>_<arch>.deb, the host tool.
+include(GNUInstallDirs)
+install(TARGETS raysteer RUNTIME)
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Debian keeps its changelog compressed; -n leaves the time out, so that the package's bytes do not depend on it.
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/changelog.gz
+  COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/packaging/changelog > ${CMAKE_BINARY_DIR}/changelog.gz
+  DEPENDS packaging/changelog VERBATIM)
+add_custom_target(changelog ALL DEPENDS ${CMAKE_BINARY_DIR}/changelog.gz)
+install(FILES ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME raysteer)
+set(CPACK_PACKAGE_VENDOR "The Raysteer developers")
+set(CPACK_PACKAGE_CONTACT "The Raysteer developers <raysteer@localhost.localdomain>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "calibrate and scan with projector and cameras, in millimetres
+ Raysteer puts a steered projector's picture where you said, and measures by
+ how many millimetres it missed. This is the tool for the laptop: it checks
+ recorded sessions, calibrates cameras and projectors, scans surfaces with
+ structured light, and reports how sure it is and where it is not.")
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+include(CPack)
