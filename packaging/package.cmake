@@ -20,11 +20,12 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "calibrate and scan with projector and cameras, in millimetres
- Raysteer puts a steered projector's picture where you said, and measures by
- how many millimetres it missed. This is the tool for the laptop: it checks
- recorded sessions, calibrates cameras and projectors, scans surfaces with
- structured light, and reports how sure it is and where it is not.")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "calibrate and scan with projector and cameras")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"Raysteer puts a steered projector's picture where you said, and measures by
+how many millimetres it missed. This is the tool for the laptop: it checks
+recorded sessions, calibrates cameras and projectors, scans surfaces with
+structured light, and reports how sure it is and where it is not.")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 include(CPack)
