@@ -1,0 +1,33 @@
+// Solves the relative pose of a pair again from the scan's own matches, and says whether the pair moved.
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+
+#include "calib/model/rig.hpp"
+#include "calib/scene/match.hpp"
+#include "calib/scene/two_views.hpp"
+
+namespace raysteer::calib::scene {
+
+/// Rotation and direction of the baseline; its length cannot be seen in matches and is kept.
+struct PoseRefit {
+  model::Pose T_right_left;
+  Eigen::Matrix<double, 5, 5> covariance;  ///< rotation (3, left increment, rad), baseline direction (2, rad)
+  double moved_rad = 0;                    ///< angle between the calibrated rotation and this one
+  double moved_sigma_rad = 0;              ///< one sigma of it: noise by cells, and the calibration's own uncertainty
+  double baseline_turned_rad = 0;          ///< angle between the two directions of the baseline
+  double chi_square = 0;                   ///< of the move against both uncertainties, 5 degrees of freedom
+  bool moved = false;                      ///< beyond chance (1e-6) and worth more than 0.1 px
+  std::size_t fitted = 0, held_out = 0;    ///< matches
+  double held_out_before_px = 0;           ///< 1.4826 MAD of the disagreement of the matches not fitted
+  double held_out_after_px = 0;
+};
+
+/// Fits on every second match in a checkerboard of projector pixels; the other half is held out.
+/// `rig` carries the calibration's covariance of devices `left` and `right` (an empty one counts as exact).
+/// Errors: kTooFewMatches, kSolverDiverged.
+Result<PoseRefit> refit_pose(const model::Rig& rig, std::size_t left, std::size_t right,
+                             std::span<const Match> matches);
+
+}  // namespace raysteer::calib::scene
