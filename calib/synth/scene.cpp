@@ -82,7 +82,7 @@ std::optional<Hit> first_hit(const Scene& scene, const Eigen::Vector3d& origin, 
   Hit hit;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < scene.plates.size(); ++i) {
-    Eigen::Vector2d place;
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();
     if (const auto s = meet(scene.plates[i], origin, direction, nearest, place)) {
       const Eigen::Vector3d z = scene.plates[i].T_rig_plate.q * Eigen::Vector3d::UnitZ();
       nearest = *s;
@@ -114,7 +114,7 @@ bool blocked(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vecto
   const Eigen::Vector3d origin = from + kShadowMargin * way;
   const double s_max = 1 - 2 * kShadowMargin;
   for (const Plate& each : scene.plates) {
-    Eigen::Vector2d place;
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();
     if (meet(each, origin, way, s_max, place)) {
       return true;
     }

@@ -45,12 +45,12 @@ void add_box(Scene& scene, const model::Pose& T_rig_box, const Eigen::Vector3d& 
 
 /// The nearest surface along origin + s * direction, s > 0.
 struct Hit {
-  double s = 0;            ///< in lengths of `direction`
-  Eigen::Vector3d p;       ///< rig frame
-  Eigen::Vector3d normal;  ///< unit length, towards the origin of the ray
-  int surface = -1;        ///< plates first, then balls
-  double u = 0, v = 0;     ///< place on a plate
-  bool front = false;      ///< a plate's printed side
+  double s = 0;                                      ///< in lengths of `direction`
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();       ///< rig frame
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length, towards the origin of the ray
+  int surface = -1;                                  ///< plates first, then balls
+  double u = 0, v = 0;                               ///< place on a plate
+  bool front = false;                                ///< a plate's printed side
 };
 std::optional<Hit> first_hit(const Scene& scene, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 
