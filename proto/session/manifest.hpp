@@ -29,9 +29,9 @@ struct Camera {
 
 /// One mirror direction, or one pose of a board: the sequence is shown once for each.
 struct Look {
-  std::string name;                            ///< unique in the session
-  std::optional<std::vector<double>> command;  ///< what the mirror was told, in radians; one number per axis
-  std::string note;
+  std::string name;                                 ///< unique in the session
+  std::optional<std::vector<double>> command = {};  ///< what the mirror was told, in radians; one number per axis
+  std::string note = {};
   bool operator==(const Look&) const = default;
 };
 

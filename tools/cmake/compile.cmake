@@ -37,7 +37,8 @@ add_library(raysteer_options INTERFACE)
 target_include_directories(raysteer_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
 target_compile_options(raysteer_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
-  -Woverloaded-virtual -Wswitch -Werror)
+  -Woverloaded-virtual -Wswitch -Werror
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # g++ 12 warns of "text" + std::string (GCC bug 105651)
 if(RAYSTEER_SANITIZE)
   target_compile_options(raysteer_options INTERFACE -fsanitize=${RAYSTEER_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=undefined)

@@ -1,0 +1,28 @@
+// value: file-name templates: "left/{look}_{index:02}.png".
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "hal/base/result.hpp"
+
+namespace raysteer::proto::session {
+
+struct TemplateUse {
+  bool camera = false;
+  bool look = false;
+  bool index = false;
+};
+
+/// What a template stands for, or what is wrong with it in words ("has '{indx}'; known are ...").
+Result<TemplateUse> check_template(std::string_view text);
+
+/// Fills a template that check_template() accepts.
+std::string fill_template(std::string_view text, std::string_view camera, std::string_view look, int index);
+
+/// Why `path` may leave the folder it starts in ("is absolute", "goes up with '..'"), if it may. Symbolic links are
+/// the reader's care.
+std::optional<std::string> leaves_folder(std::string_view path);
+
+}  // namespace raysteer::proto::session
