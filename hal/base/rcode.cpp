@@ -190,6 +190,14 @@ constexpr std::array kRows{
         {ErrorCode::kNotFound, "nothing-to-report", "there is nothing to report here",
          "The folder holds no result.json of a calibration or a scan.",
          "Run 'raysteer calibrate' or 'raysteer scan' with --out DIR first."}},
+    Row{RCode::kInternal,
+        {ErrorCode::kInternal, "internal", "something failed inside Raysteer",
+         "A fault in Raysteer, or no memory left.",
+         "Free memory and try again; if it stays, report it with the command line and the message."}},
+    Row{RCode::kTargetDoesNotFit,
+        {ErrorCode::kInvalidArgument, "target-does-not-fit", "the target does not fit on the paper",
+         "Squares times their size, the white margin and the ruler need more room than the paper has.",
+         "Use the largest square named, fewer squares, or larger paper."}},
 };
 
 constexpr auto kCodes = [] {

@@ -89,6 +89,8 @@ enum class RCode : int {
   kCancelled = 503,
   kUnknownCode = 504,
   kNothingToReport = 505,
+  kInternal = 506,
+  kTargetDoesNotFit = 507,
 };
 
 struct Explanation {

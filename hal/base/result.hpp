@@ -86,11 +86,11 @@ inline Status ok() { return {}; }
 }  // namespace raysteer
 
 /// Returns the error of `expression` from this function, if it has one.
-#define RAYSTEER_TRY(expression)                                             \
-  do {                                                                       \
-    if (auto raysteer_status = (expression); !raysteer_status.has_value()) { \
-      return std::move(raysteer_status).error();                             \
-    }                                                                        \
+#define RAYSTEER_TRY(expression)                                               \
+  do {                                                                         \
+    if (auto&& raysteer_status = (expression); !raysteer_status.has_value()) { \
+      return std::move(raysteer_status).error();                               \
+    }                                                                          \
   } while (false)
 
 /// Our own invariant: aborts when it does not hold.
