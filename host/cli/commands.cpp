@@ -1,0 +1,20 @@
+#include "host/cli/commands.hpp"
+
+#include <array>
+
+namespace raysteer::host::cli {
+
+const CommandTable& all_commands() {
+  static constexpr std::array kCommands{
+      CommandRow{"explain", explain},
+  };
+  static constexpr std::array kGroups{
+      GroupRow{"session", "Look at recorded sessions"},
+      GroupRow{"calibrate", "Solve cameras and projector from a session"},
+      GroupRow{"target", "Calibration boards"},
+  };
+  static constexpr CommandTable kTable{kCommands, kGroups};
+  return kTable;
+}
+
+}  // namespace raysteer::host::cli

@@ -1,0 +1,35 @@
+// The visible table of all commands.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "host/cli/command.hpp"
+
+namespace raysteer::host::cli {
+
+struct CommandRow {
+  std::string_view path;  ///< "session check"
+  std::unique_ptr<Command> (*make)();
+};
+
+/// A noun that groups commands: "session" of "session check".
+struct GroupRow {
+  std::string_view name;
+  std::string_view summary;
+};
+
+/// In the order of --help.
+struct CommandTable {
+  std::span<const CommandRow> commands;
+  std::span<const GroupRow> groups;
+};
+
+/// All commands of the program.
+const CommandTable& all_commands();
+
+// One function a command, each defined in the file of its name.
+std::unique_ptr<Command> explain();
+
+}  // namespace raysteer::host::cli
