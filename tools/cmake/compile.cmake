@@ -3,6 +3,12 @@ option(RAYSTEER_TESTS "build tests and benchmarks" ON)
 set(RAYSTEER_SANITIZE "" CACHE STRING "sanitizers for -fsanitize=, for example address,undefined")
 option(RAYSTEER_COVERAGE "count executed lines" OFF)
 
+option(RAYSTEER_FUZZ "build libFuzzer programs instead of tests (clang only)" OFF)
+if(RAYSTEER_FUZZ)
+  set(RAYSTEER_TESTS OFF)
+  set(RAYSTEER_SANITIZE "fuzzer-no-link,address,undefined")
+endif()
+
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -22,6 +28,8 @@ if(RAYSTEER_CCACHE)
     ${RAYSTEER_CCACHE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     add_compile_options(-fpch-preprocess)
+  else()
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
   endif()
 endif()
 
@@ -30,7 +38,7 @@ target_include_directories(raysteer_options INTERFACE ${PROJECT_SOURCE_DIR} ${PR
 target_compile_options(raysteer_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
   -Woverloaded-virtual -Wswitch -Werror
-  # GCC 12 raises these falsely for "literal" + std::string (GCC bug 105651).
+  # g++ 12 raises these falsely for "text" + std::string (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
