@@ -19,7 +19,7 @@ struct CloudPoint {
 struct Rejected {
   std::size_t epipolar = 0;  ///< rays miss each other by more than the gate
   std::size_t depth = 0;     ///< behind a view, beyond `max_depth_m`, or rays (nearly) parallel
-  std::size_t isolated = 0;  ///< no neighbour on the panel at a similar depth: a depth edge or a wrong match
+  std::size_t isolated = 0;  ///< fewer than two of 5 x 5 panel neighbours at its depth: a wrong match
 };
 
 struct Cloud {
@@ -32,9 +32,9 @@ struct TriangulateOptions {
   double max_depth_m = 20;
 };
 
-/// First-order optimal two-view triangulation: pixels move onto their epipolar lines, weighted by their covariances,
-/// then the rays meet. Errors: kTooFewMatches (fewer than 100 points left).
-Result<Cloud> triangulate(const TwoViews& views, std::span<const Match> matches,
+/// First-order optimal two-view triangulation: pixels move onto their epipolar lines by the least amount, weighted by
+/// their covariances, then the rays meet. Errors: kTooFewMatches (fewer than 100 points left).
+Result<Cloud> triangulate(const TwoViews& views, std::span<const Match> matches, std::span<const RayPair> rays,
                           const TriangulateOptions& options = {});
 
 }  // namespace raysteer::calib::scene
