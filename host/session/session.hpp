@@ -62,6 +62,9 @@ class Session {
     int height = 0;
   };
   Session() = default;
+  Status find_frames(const std::filesystem::path& home, const std::optional<std::filesystem::path>& frames_root);
+  Status find_sizes();
+  std::string name(const FrameId& id) const;
   template <class Pixel>
   Status load_as(const FrameId& id, Image<Pixel>& into) const;
 
