@@ -27,7 +27,9 @@ std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begi
 
 }  // namespace
 
-Result<Session> Session::open(const fs::path& file, const std::optional<fs::path>& frames_root) {
+Result<Session> Session::open(const fs::path& named, const std::optional<fs::path>& frames_root) {
+  std::error_code not_there;
+  const fs::path file = fs::is_directory(named, not_there) ? named / "session.toml" : named;
   Session session;
   session.file_ = file;
   const fs::path home = folder_of(file);

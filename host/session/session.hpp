@@ -23,12 +23,13 @@ struct FrameId {
 
 class Session {
  public:
-  /// Reads the session file, and makes sure that every frame is there (existence only; nothing is decoded but the
-  /// header of each camera's first frame). `frames_root` is --frames; without it the variable RAYSTEER_DATA_DIR counts.
-  /// Frames are taken from the first of these folders that has any of them: --frames, the session's folder,
-  /// RAYSTEER_DATA_DIR. Errors: those of read_manifest(), kFileMissing, kFileUnreadable, kFrameMissing (names camera,
-  /// look, index, path, and how many others are missing), kPathOutside, kFrameSize, kFrameDepth, kFrameFormat.
-  static Result<Session> open(const std::filesystem::path& file,
+  /// Reads the session file (of a folder: the session.toml in it), and makes sure that every frame is there (existence
+  /// only; nothing is decoded but the header of each camera's first frame). `frames_root` is --frames; without it the
+  /// variable RAYSTEER_DATA_DIR counts. Frames are taken from the first of these folders that has any of them:
+  /// --frames, the session's folder, RAYSTEER_DATA_DIR. Errors: those of read_manifest(), kFileMissing,
+  /// kFileUnreadable, kFrameMissing (names camera, look, index, path, and how many others are missing), kPathOutside,
+  /// kFrameSize, kFrameDepth, kFrameFormat.
+  static Result<Session> open(const std::filesystem::path& named,
                               const std::optional<std::filesystem::path>& frames_root = {});
 
   const proto::session::Manifest& manifest() const { return manifest_; }

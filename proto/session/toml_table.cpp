@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hal/base/nearest.hpp"
+
 namespace raysteer::proto::session {
 namespace {
 
@@ -34,46 +36,11 @@ std::string shortest(double value) {
   return {text.data(), end};
 }
 
-// Levenshtein: insertions, deletions and replacements.
-std::size_t typing_errors(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) {
-    row[j] = j;
-  }
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 std::string place(const toml::node& node) {
   const toml::source_region& source = node.source();
   return (source.path ? *source.path : std::string("text")) + ":" + std::to_string(std::max(source.begin.line, 1U));
-}
-
-std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
-  constexpr std::size_t kLongestWord = 64;  // the effort grows with the product of both lengths
-  if (word.size() > kLongestWord) {
-    return std::nullopt;
-  }
-  std::optional<std::string_view> best;
-  std::size_t fewest = word.size() / 3 + 2;
-  for (const std::string_view candidate : candidates) {
-    // A key with another unit (square_mm for square_m) begins alike.
-    const std::size_t errors = typing_errors(word, candidate);
-    if (errors < fewest && errors < candidate.size()) {
-      fewest = errors;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 void Faults::add(Error error) {
@@ -287,10 +254,7 @@ int TomlTable::choice(std::string_view key, const std::vector<std::string_view>&
   }
   if (!value.empty() || find(key)->is_string()) {
     std::string note = "is '" + value + "'";
-    if (const auto guess = nearest(value, choices)) {
-      note += "; did you mean '" + std::string(*guess) + "'?";
-    }
-    note += " Known:";
+    note += did_you_mean(value, choices) + " Known:";
     for (const std::string_view known : choices) {
       note += " " + std::string(known);
     }
@@ -350,11 +314,8 @@ void TomlTable::finish() {
       if (known_.contains(key.str())) {
         continue;
       }
-      std::string note = place(node) + ": '" + std::string(key.str()) + "'" + (what_.empty() ? "" : " in " + what_);
-      if (const auto guess = nearest(key.str(), known)) {
-        note += "; did you mean '" + std::string(*guess) + "'?";
-      }
-      faults_->add(fail(RCode::kUnknownKey, std::move(note)));
+      const std::string name = "'" + std::string(key.str()) + "'" + (what_.empty() ? "" : " in " + what_);
+      faults_->add(fail(RCode::kUnknownKey, place(node) + ": " + name + did_you_mean(key.str(), known)));
       return;
     }
   }

@@ -80,7 +80,4 @@ class TomlTable {
 /// "demo.toml:12"
 std::string place(const toml::node& node);
 
-/// The candidate that takes the fewest typing errors to become `word`, if that is few for a word of its length.
-std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& candidates);
-
 }  // namespace raysteer::proto::session
