@@ -29,8 +29,10 @@ struct Options {
   double min_sigma = 5;
   /// ... and below this many DN of 255 neither, whatever the noise is said to be. 0 trusts the noise alone.
   double min_difference_dn = 0;
-  /// White - black, and modulation of a sinusoid, must also reach this (DN of 255).
+  /// White - black must also reach this (DN of 255).
   double min_contrast_dn = 0;
+  /// ... and the amplitude B of a sinusoid (A + B cos) this (DN of 255).
+  double min_modulation_dn = 0;
   /// Of full scale; at or above it the sensor no longer tells (algorithms: 250 of 255).
   double saturation = 250.0 / 255.0;
   /// Heterodyne: largest distance of the order from an integer, in periods.

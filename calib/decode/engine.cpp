@@ -1,0 +1,487 @@
+#include "calib/decode/engine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "calib/decode/neighbours.hpp"
+
+namespace raysteer::calib::decode {
+namespace {
+
+/// Noise is estimated from every 16th row and every 4th column: 47,000 pixels of 3 million.
+constexpr int kSampledRows = 16;
+constexpr int kSampledColumns = 4;
+/// Where the frames tell nothing about their noise: a camera of 1.5 DN and 40 electrons a DN.
+constexpr double kUsualReadSigma = 1.5;
+constexpr double kUsualElectrons = 40;
+/// Stripes at least this wide show direct light even where the projector is blurred by 2 px.
+constexpr double kDirectStripe = 8;
+/// A pixel needs this many of 8 neighbours: the side of a depth edge has at least three.
+constexpr int kFewestNeighbours = 3;
+/// A half period from Gray and the phase may disagree by this share of a period before the pixel is ambiguous.
+constexpr double kMaxDisagreement = 0.45;
+/// A sinusoid's residual above this many variances is no sinusoid (algorithms 2.5).
+constexpr double kMaxChi2 = 9;
+
+/// Stripes of bit b are 2^(b+1) codes wide, but for the most significant.
+double stripe_of(const PatternBlock& block, int bit) { return std::ldexp(block.stripe_px, bit + 1); }
+
+/// The two finest bits with resolved stripes show direct light; those above them are coarse.
+std::vector<BitRole> roles_of(const PatternBlock& block) {
+  std::vector<BitRole> roles(static_cast<std::size_t>(block.bits));
+  int first = 0;
+  while (first + 2 < block.bits && stripe_of(block, first) < kDirectStripe) {
+    ++first;
+  }
+  for (int bit = 0; bit < block.bits; ++bit) {
+    roles[bit] = {.bit = bit, .direct = bit == first || bit == first + 1, .coarse = bit > first + 1};
+  }
+  return roles;
+}
+
+int codes_of(const PatternBlock& block, int panel) {
+  return static_cast<int>(std::ceil((panel + block.offset_px) / block.stripe_px));
+}
+
+std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
+
+float median(std::vector<float>& values) {
+  if (values.empty()) {
+    return std::numeric_limits<float>::quiet_NaN();
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+template <class T>
+Engine<T>::Engine(Plan plan, int width, int height, int bits, const Options& options)
+    : plan_(std::move(plan)),
+      width_(width),
+      height_(height),
+      options_(options),
+      full_scale_(std::ldexp(1.0, bits) - 1),
+      estimate_(full_scale_) {
+  for (const Axis axis : {Axis::kX, Axis::kY}) {
+    if (plan_.axis(axis).gray) {
+      gray(axis).roles = roles_of(*plan_.axis(axis).gray);
+    }
+  }
+  noise_ = {.read_sigma_dn = dn(kUsualReadSigma), .electrons_per_dn = kUsualElectrons / dn(1)};
+}
+
+template <class T>
+void Engine<T>::restart() {
+  next_ = 0;
+  white_seen_ = black_seen_ = false;
+  waiting_.clear();
+  estimate_ = NoiseEstimate(full_scale_);
+  gray_x_.sampled = gray_y_.sampled = false;
+  for (PhaseSums& phase : phases_) {
+    phase.clear();
+  }
+  std::ranges::fill(phase_steps_, 0);
+}
+
+template <class T>
+Status Engine<T>::push(ImageView<const T> frame) {
+  if (frame.width() != width_ || frame.height() != height_) {
+    return fail(RCode::kFrameSize,
+                "frame " + std::to_string(next_ + 1) + " is " + size_text(frame.width(), frame.height()) +
+                    ", expected " + size_text(width_, height_),
+                next_);
+  }
+  if (next_ >= static_cast<int>(plan_.frames.size())) {
+    return fail(RCode::kFrameCount,
+                "the sequence has " + std::to_string(plan_.frames.size()) + " frames, one more came", next_);
+  }
+  if (next_ == 0) {
+    for (const Axis axis : {Axis::kX, Axis::kY}) {
+      if (plan_.axis(axis).gray) {
+        gray(axis).store = GrayStore<T>(width_, height_);
+        gray(axis).store.clear_rows(0, height_);
+      }
+    }
+    if (phases_.empty()) {
+      for (const PatternBlock& block : plan_.phases) {
+        phases_.emplace_back(block, width_, height_);
+        phase_steps_.push_back(0);
+      }
+    }
+  }
+  const Pattern& pattern = plan_.frames[static_cast<std::size_t>(next_)];
+  const auto copy = [&](Image<T>& image) {
+    if (image.empty()) {
+      image = Image<T>::uninitialised(width_, height_);
+    }
+    for (int y = 0; y < height_; ++y) {
+      std::copy(frame.row(y), frame.row(y) + width_, image.row(y));
+    }
+  };
+  switch (pattern.block.kind) {
+    case PatternKind::kWhite:
+      copy(white_);
+      white_seen_ = true;
+      break;
+    case PatternKind::kBlack:
+      copy(black_);
+      black_seen_ = true;
+      break;
+    case PatternKind::kGray:
+      if (pattern.block.inverse) {
+        if (pattern.inverted != pattern.block.inverse_first) {
+          const ImageView<const T> first = held_.view();
+          fold_frame(pattern.block.axis, pattern.bit, pattern.inverted ? first : frame,
+                     pattern.inverted ? frame : first);
+        } else {
+          copy(held_);
+        }
+      } else if (threshold_known(pattern)) {
+        fold_threshold(pattern, frame);
+      } else {
+        waiting_.emplace_back(pattern, Image<T>());
+        copy(waiting_.back().second);
+      }
+      break;
+    case PatternKind::kPhase: {
+      const int phase = plan_.phase_of_block[pattern.block_index];
+      phases_[phase].add(pattern.step, frame);
+      ++phase_steps_[phase];
+      break;
+    }
+  }
+  ++next_;
+  if (!waiting_.empty()) {
+    fold_waiting();
+  }
+  return ok();
+}
+
+template <class T>
+bool Engine<T>::threshold_known(const Pattern& pattern) const {
+  const AxisPlan& axis = plan_.axis(pattern.block.axis);
+  if (axis.threshold == Threshold::kPhaseMean) {
+    const int phase = axis.phases.front();
+    return phase_steps_[phase] == plan_.phases[phase].steps;
+  }
+  return white_seen_ && black_seen_;
+}
+
+template <class T>
+void Engine<T>::fold_waiting() {
+  std::erase_if(waiting_, [&](const std::pair<Pattern, Image<T>>& item) {
+    if (!threshold_known(item.first)) {
+      return false;
+    }
+    fold_threshold(item.first, item.second.view());
+    return true;
+  });
+}
+
+template <class T>
+void Engine<T>::fold_frame(Axis axis, int bit, ImageView<const T> p, ImageView<const T> q) {
+  const BitRole& role = gray(axis).roles[bit];
+  for (int y = 0; y < height_; ++y) {
+    fold(role, p.row(y), q.row(y), width_, gray(axis).store.row(y));
+  }
+  sample_noise(axis, role, p, q);
+}
+
+template <class T>
+void Engine<T>::fold_threshold(const Pattern& pattern, ImageView<const T> frame) {
+  // The inverse that was not taken: the threshold lies half-way between it and the pattern.
+  const Axis axis = pattern.block.axis;
+  const AxisPlan& plan = plan_.axis(axis);
+  std::vector<T> inverse(static_cast<std::size_t>(width_));
+  const int most = static_cast<int>(full_scale_);
+  for (int y = 0; y < height_; ++y) {
+    const T* p = frame.row(y);
+    for (int x = 0; x < width_; ++x) {
+      const int sum = plan.threshold == Threshold::kPhaseMean
+                          ? static_cast<int>(std::lround(2 * phases_[plan.phases.front()].mean(x, y)))
+                          : white_(x, y) + black_(x, y);
+      inverse[x] = static_cast<T>(std::clamp(sum - p[x], 0, most));
+    }
+    fold(gray(axis).roles[pattern.bit], p, inverse.data(), width_, gray(axis).store.row(y));
+  }
+}
+
+template <class T>
+void Engine<T>::sample_noise(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
+  // Pattern plus inverse is white plus black, whatever the bit: from one coarse bit to the next only noise changes.
+  if (!role.coarse) {
+    return;
+  }
+  GrayState& state = gray(axis);
+  const auto saturated = static_cast<int>(options_.saturation * full_scale_);
+  std::size_t place = 0;
+  const int columns = (width_ + kSampledColumns - 1) / kSampledColumns;
+  const int rows = (height_ + kSampledRows - 1) / kSampledRows;
+  state.sampled_sum.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for (int y = 0; y < height_; y += kSampledRows) {
+    for (int x = 0; x < width_; x += kSampledColumns, ++place) {
+      const int low = std::min(p(x, y), q(x, y));
+      const int high = std::max(p(x, y), q(x, y));
+      const int sum = high < saturated ? low + high : -1;
+      const int before = state.sampled_sum[place];
+      if (state.sampled && sum >= 0 && before >= 0) {
+        estimate_.add(0.5 * sum, sum - before, 4);
+      }
+      state.sampled_sum[place] = sum;
+    }
+  }
+  state.sampled = true;
+}
+
+template <class T>
+void Engine<T>::sample_phase_noise(const PhaseSums& sums) {
+  if (sums.block().steps < 4) {
+    return;
+  }
+  // The residual has steps - 3 degrees of freedom; as one difference each it would look less scattered than it is,
+  // so its root gets the sign-free share of one: sqrt of a chi-square with many degrees is near its mean.
+  for (int y = 0; y < height_; y += kSampledRows / 2) {
+    for (int x = 0; x < width_; x += kSampledColumns / 2) {
+      const PhaseSums::Pixel pixel = sums.pixel(x, y);
+      if (pixel.peak < options_.saturation * full_scale_) {
+        estimate_.add(pixel.mean, std::sqrt(pixel.residual), 1);
+      }
+    }
+  }
+}
+
+template <class T>
+GrayLimits Engine<T>::limits(const AxisPlan& axis) const {
+  // Variance of p - q at a border, where p = q = s / 2. The inverse made of white and black is w + b - p, so that
+  // p - q = 2 p - w - b; that made of the mean A of n steps is 2 A - p.
+  double share = 2;
+  if (axis.threshold == Threshold::kWhiteAndBlack) {
+    share = 6;
+  } else if (axis.threshold == Threshold::kPhaseMean) {
+    share = 4 * (1 + 1.0 / plan_.phases[axis.phases.front()].steps);
+  }
+  GrayLimits limits;
+  limits.difference_floor = static_cast<float>(share * noise_.floor());
+  limits.difference_slope = static_cast<float>(share * noise_.slope() / 2);
+  limits.min_sigma2 = static_cast<float>(options_.min_sigma * options_.min_sigma);
+  limits.min_difference2 = static_cast<float>(dn(options_.min_difference_dn) * dn(options_.min_difference_dn));
+  limits.min_contrast = static_cast<float>(dn(options_.min_contrast_dn));
+  limits.saturation = static_cast<float>(options_.saturation * full_scale_);
+  limits.finest_coarse = axis.gray->bits > 2;
+  limits.codes = codes_of(*axis.gray, axis.panel);
+  limits.width = width_;
+  return limits;
+}
+
+template <class T>
+CodeMap Engine<T>::make_map() const {
+  CodeMap map;
+  map.mask = Image<std::uint8_t>(width_, height_);
+  for (const Axis which : {Axis::kX, Axis::kY}) {
+    const AxisPlan& axis = plan_.axis(which);
+    if (!axis.used()) {
+      continue;
+    }
+    (which == Axis::kX ? map.code_x : map.code_y) = Image<std::uint16_t>::uninitialised(width_, height_);
+    if (options_.sub_pixel || !axis.phases.empty()) {
+      (which == Axis::kX ? map.x : map.y) = Image<float>::uninitialised(width_, height_);
+      (which == Axis::kX ? map.variance_x : map.variance_y) = Image<float>::uninitialised(width_, height_);
+    }
+  }
+  return map;
+}
+
+template <class T>
+Result<CodeMap> Engine<T>::finish() {
+  const int expected = static_cast<int>(plan_.frames.size());
+  if (next_ != expected) {
+    const int came = next_;
+    restart();
+    return fail(RCode::kFrameCount,
+                "the sequence has " + std::to_string(expected) + " frames, " + std::to_string(came) + " came", came);
+  }
+  for (const PhaseSums& phase : phases_) {
+    sample_phase_noise(phase);
+  }
+  if (options_.read_sigma_dn > 0 || options_.electrons_per_dn > 0) {
+    noise_.read_sigma_dn = options_.read_sigma_dn;
+    noise_.electrons_per_dn =
+        options_.electrons_per_dn > 0 ? options_.electrons_per_dn : std::numeric_limits<double>::infinity();
+  } else {
+    noise_ = estimate_.fit(noise_);
+  }
+  CodeMap map = make_map();
+  for (const Axis which : {Axis::kX, Axis::kY}) {
+    const AxisPlan& axis = plan_.axis(which);
+    if (axis.gray) {
+      const bool x = which == Axis::kX;
+      Image<float> none;
+      const bool place = axis.phases.empty();
+      GrayAxis<T> rows(which, *axis.gray, limits(axis), height_, x ? map.code_x : map.code_y,
+                       place ? (x ? map.x : map.y) : none, place ? (x ? map.variance_x : map.variance_y) : none);
+      const bool references = plan_.white && plan_.black;
+      for (int v = 0; v < height_; ++v) {
+        rows.row(gray(which).store.row(v), references ? white_.row(v) : nullptr, references ? black_.row(v) : nullptr,
+                 map.mask.row(v));
+      }
+      rows.finish();
+    }
+    if (!axis.phases.empty()) {
+      place_phases(which, map);
+    }
+  }
+  restart();
+  return complete(std::move(map));
+}
+
+template <class T>
+void Engine<T>::place_phases(Axis which, CodeMap& map) {
+  const AxisPlan& axis = plan_.axis(which);
+  const bool along_x = which == Axis::kX;
+  Image<float>& value = along_x ? map.x : map.y;
+  Image<float>& variance = along_x ? map.variance_x : map.variance_y;
+  Image<std::uint16_t>& code = along_x ? map.code_x : map.code_y;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const double saturated = options_.saturation * full_scale_;
+  const double least_modulation = dn(options_.min_modulation_dn);
+  std::vector<float> residuals;
+  std::size_t covered = 0;
+  std::vector<double> places(axis.phases.size()), periods(axis.phases.size()), variances(axis.phases.size());
+  for (std::size_t i = 0; i < axis.phases.size(); ++i) {
+    periods[i] = plan_.phases[axis.phases[i]].period_px;
+  }
+  for (int v = 0; v < height_; ++v) {
+    for (int u = 0; u < width_; ++u) {
+      std::uint8_t reasons = 0;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const PhaseSums& sums = phases_[axis.phases[i]];
+        const PhaseSums::Pixel pixel = sums.pixel(u, v);
+        const double noise = noise_.variance(pixel.mean);
+        places[i] = pixel.place;
+        variances[i] = sums.variance(pixel, noise_);
+        if (pixel.peak >= saturated) {
+          reasons |= kSaturated;
+        }
+        if (pixel.modulation < least_modulation ||
+            pixel.modulation * pixel.modulation < options_.min_sigma * options_.min_sigma * noise) {
+          reasons |= kLowModulation;
+        }
+        if (pixel.residual > kMaxChi2 * noise) {
+          reasons |= kAmbiguous;
+        }
+      }
+      covered += (reasons & (kSaturated | kLowModulation)) == 0 ? 1 : 0;
+      double place = 0;
+      if (axis.gray) {
+        // Half periods order the phase (algorithms 2.4).
+        const std::uint16_t stripe = code(u, v);
+        const double rough = (stripe + 0.5) * axis.gray->stripe_px - axis.gray->offset_px - 0.5;
+        place = nearest_period(places[0], periods[0], rough);
+        if (stripe == CodeMap::kNoCode || std::abs(place - rough) > kMaxDisagreement * periods[0]) {
+          reasons |= kAmbiguous;
+        }
+      } else {
+        const Heterodyne found = heterodyne(places, periods, axis.panel);
+        place = found.place;
+        if (places.size() > 1) {
+          if ((reasons & (kSaturated | kLowModulation)) == 0) {
+            residuals.push_back(static_cast<float>(found.residual));
+          }
+          if (found.residual > options_.max_order_residual) {
+            reasons |= kAmbiguous;
+          }
+        }
+      }
+      // Each period measures the same coordinate; they are weighted by what they know.
+      double weights = 0;
+      double sum = 0;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        weights += 1 / variances[i];
+        sum += nearest_period(places[i], periods[i], place) / variances[i];
+      }
+      place = sum / weights;
+      if (1 / weights > options_.max_sigma_px * options_.max_sigma_px) {
+        reasons |= kLowModulation;
+      }
+      if (place < -1 || place > axis.panel) {
+        reasons |= kOutside;
+      }
+      map.mask(u, v) |= reasons;
+      const bool valid = reasons == 0;
+      value(u, v) = valid ? static_cast<float>(place) : kNan;
+      variance(u, v) = valid ? static_cast<float>(1 / weights) : kNan;
+      code(u, v) = valid
+                       ? static_cast<std::uint16_t>(std::clamp(static_cast<int>(std::lround(place)), 0, axis.panel - 1))
+                       : CodeMap::kNoCode;
+    }
+  }
+  (along_x ? map.diagnostics.order_residual_x : map.diagnostics.order_residual_y) = median(residuals);
+  map.diagnostics.coverage = static_cast<double>(covered) / static_cast<double>(map.mask.size());
+}
+
+template <class T>
+Result<CodeMap> Engine<T>::complete(CodeMap map) {
+  if (options_.neighbours) {
+    const auto reach = [](int codes, int camera) { return 2 + (2 * codes + camera - 1) / camera; };
+    const auto codes = [&](const AxisPlan& axis) {
+      return axis.gray && axis.phases.empty() ? codes_of(*axis.gray, axis.panel) : axis.panel;
+    };
+    mark_edges(map, reach(codes(plan_.x), width_), reach(codes(plan_.y), height_), kFewestNeighbours);
+  }
+  Diagnostics& diagnostics = map.diagnostics;
+  diagnostics.pixels = map.mask.size();
+  diagnostics.read_sigma_dn = noise_.read_sigma_dn;
+  diagnostics.electrons_per_dn = noise_.electrons_per_dn;
+  std::array<std::size_t, 256> counts{};
+  for (int v = 0; v < height_; ++v) {
+    for (int u = 0; u < width_; ++u) {
+      ++counts[map.mask(u, v)];
+    }
+  }
+  diagnostics.valid = counts[kValid];
+  if (plan_.phases.empty()) {
+    std::size_t covered = 0;
+    for (std::size_t mask = 0; mask < counts.size(); ++mask) {
+      covered += (mask & (kShadow | kLowModulation | kSaturated)) == 0 ? counts[mask] : 0;
+    }
+    diagnostics.coverage = static_cast<double>(covered) / static_cast<double>(diagnostics.pixels);
+  }
+  if (diagnostics.valid == 0) {
+    std::size_t saturated = 0;
+    for (std::size_t mask = 0; mask < counts.size(); ++mask) {
+      saturated += (mask & kSaturated) != 0 ? counts[mask] : 0;
+    }
+    if (2 * saturated > diagnostics.pixels) {
+      return fail(RCode::kFramesSaturated, std::to_string(100 * saturated / diagnostics.pixels) +
+                                               " % of the pixels are saturated and none could be decoded");
+    }
+    return fail(RCode::kNothingDecoded, "none of " + std::to_string(diagnostics.pixels) + " pixels has a usable code");
+  }
+  // What is not valid has no coordinate, on either axis.
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  for (Image<float>* image : {&map.x, &map.y, &map.variance_x, &map.variance_y}) {
+    float* pixels = image->data();
+    const std::uint8_t* mask = map.mask.data();
+    for (std::size_t i = 0; i < image->size(); ++i) {
+      pixels[i] = mask[i] == kValid ? pixels[i] : kNan;
+    }
+  }
+  return map;
+}
+
+template <class T>
+Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
+  for (const ImageView<const T>& frame : frames) {
+    RAYSTEER_TRY(push(frame));
+  }
+  return finish();
+}
+
+template class Engine<std::uint8_t>;
+template class Engine<std::uint16_t>;
+
+}  // namespace raysteer::calib::decode

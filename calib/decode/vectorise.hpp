@@ -1,0 +1,12 @@
+// Lets the compiler make a second copy of a loop for processors with AVX2; which one runs is chosen at load time.
+//
+// No -march flags: one binary runs on every x86-64 and, with the plain copy, on AArch64. Sanitizers and function
+// multiversioning do not go together (the choice is made before they are up).
+#pragma once
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define RAYSTEER_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define RAYSTEER_CLONES
+#endif
