@@ -75,7 +75,8 @@ struct Solution {
 
   // With a projector:
   std::vector<PixelResidual> pixels;
-  double pixel_rms_px = 0;  ///< single decoded pixels, kept ones, two-dimensional
+  double pixel_rms_px = 0;    ///< single decoded pixels, kept ones, two-dimensional
+  double pixel_floor_px = 0;  ///< model error of single pixels beyond their own sigma, per coordinate
 };
 
 }  // namespace raysteer::calib::solve
