@@ -195,6 +195,37 @@ std::vector<double> TomlTable::numbers(std::string_view key) {
   return values;
 }
 
+std::vector<std::vector<double>> TomlTable::matrix(std::string_view key) {
+  std::vector<std::vector<double>> rows;
+  const toml::node* node = find(key);
+  if (node == nullptr) {
+    return rows;
+  }
+  const toml::array* array = node->as_array();
+  if (array == nullptr) {
+    wrong_type(*node, key, "an array of rows");
+    return rows;
+  }
+  for (const toml::node& element : *array) {
+    const toml::array* numbers = element.as_array();
+    std::vector<double>& row = rows.emplace_back();
+    for (std::size_t i = 0; numbers != nullptr && i < numbers->size(); ++i) {
+      const toml::node& number = (*numbers)[i];
+      const std::optional<double> value = number.value<double>();
+      if (!number.is_number() || !value || !std::isfinite(*value)) {
+        wrong_type(number, key, "rows of finite numbers");
+        return {};
+      }
+      row.push_back(*value);
+    }
+    if (numbers == nullptr || row.size() != rows.front().size()) {
+      wrong_type(element, key, "rows of " + std::to_string(rows.front().size()) + " numbers each");
+      return {};
+    }
+  }
+  return rows;
+}
+
 std::vector<std::int64_t> TomlTable::integers(std::string_view key) {
   std::vector<std::int64_t> values;
   const toml::node* node = find(key);

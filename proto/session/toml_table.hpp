@@ -50,6 +50,8 @@ class TomlTable {
   bool flag(std::string_view key, bool fallback);
   std::optional<std::int64_t> maybe_integer(std::string_view key, Range<std::int64_t> range);
   std::vector<double> numbers(std::string_view key);
+  /// An array of arrays of finite numbers, rows of equal length.
+  std::vector<std::vector<double>> matrix(std::string_view key);
   std::vector<std::int64_t> integers(std::string_view key);
   /// An array of text, or one text alone.
   std::vector<std::string> texts(std::string_view key);
