@@ -64,12 +64,15 @@ bool start(const Image<Own>& own, int i, int j, float& u, float& v) {
   return between && std::abs(u1 - u0) <= kReachPx && std::abs(v1 - v0) <= kReachPx;
 }
 
+/// Added to a coordinate's variance before it becomes a weight, px^2: no pixel is trusted beyond 0.05 px, so that a few
+/// lucky ones do not outweigh their surroundings.
+constexpr float kVarianceFloor = 0.05F * 0.05F;
+
 /// Weighted sums of an affine model q = q0 + A (x - i, y - j).
 struct AffineFit {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
-  double weight_squares = 0;
-  double variance_x = 0, variance_y = 0;  ///< weighted sums of the decoder's variances
+  double variance_x = 0, variance_y = 0;  ///< sums of weight^2 x the decoder's variances
   int count = 0;
 };
 
@@ -88,14 +91,16 @@ AffineFit gather(const decode::CodeMap& map, int i, int j, float u0, float v0) {
       if (!(std::abs(dx) < 1 && std::abs(dy) < 1) || map.mask(u, v) != decode::kValid) {
         continue;
       }
-      const auto weight = static_cast<double>((1 - std::abs(dx)) * (1 - std::abs(dy)));
+      const float vx = map.variance_x(u, v);
+      const float vy = map.variance_y(u, v);
+      const auto weight =
+          static_cast<double>((1 - std::abs(dx)) * (1 - std::abs(dy)) * kVarianceFloor / (vx + vy + kVarianceFloor));
       const Eigen::Vector3d row(1, static_cast<double>(dx), static_cast<double>(dy));
       const Eigen::RowVector2d q(u - static_cast<double>(u0), v - static_cast<double>(v0));
       fit.normal.noalias() += weight * row * row.transpose();
       fit.right.noalias() += weight * row * q;
-      fit.weight_squares += weight * weight;
-      fit.variance_x += weight * static_cast<double>(map.variance_x(u, v));
-      fit.variance_y += weight * static_cast<double>(map.variance_y(u, v));
+      fit.variance_x += weight * weight * static_cast<double>(vx);
+      fit.variance_y += weight * weight * static_cast<double>(vy);
       ++fit.count;
     }
   }
@@ -121,9 +126,8 @@ Sighting sight(const decode::CodeMap& map, const Image<Own>& own, int i, int j) 
   const Eigen::Vector2d q0 = solution.row(0).transpose();
   const Eigen::Matrix2d slope = solution.bottomRows<2>().transpose();
   const double total = fit.normal(0, 0);
-  const Eigen::Vector2d variance(fit.variance_x / total, fit.variance_y / total);
-  const double effective = total * total / fit.weight_squares;
-  const Eigen::Matrix2d covariance = slope * variance.asDiagonal() * slope.transpose() / effective;
+  const Eigen::Vector2d variance = Eigen::Vector2d(fit.variance_x, fit.variance_y) / (total * total);
+  const Eigen::Matrix2d covariance = slope * variance.asDiagonal() * slope.transpose();
   if (q0.cwiseAbs().maxCoeff() > kReachPx || !covariance.allFinite()) {
     return sighting;
   }

@@ -113,6 +113,11 @@ std::vector<CloudPoint> without_isolated(std::vector<CloudPoint> points, std::sp
 
 }  // namespace
 
+std::optional<CloudPoint> triangulate_one(const TwoViews& views, const Match& match, const RayPair& rays) {
+  CloudPoint point;
+  return Triangulator(views).solve(rays, match, point) ? std::optional(point) : std::nullopt;
+}
+
 Result<Cloud> triangulate(const TwoViews& views, std::span<const Match> matches, std::span<const RayPair> rays,
                           const TriangulateOptions& options) {
   RAYSTEER_CHECK(matches.size() == rays.size());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,5 +38,8 @@ struct TriangulateOptions {
 /// their covariances, then the rays meet. Errors: kTooFewMatches (fewer than 100 points left).
 Result<Cloud> triangulate(const TwoViews& views, std::span<const Match> matches, std::span<const RayPair> rays,
                           const TriangulateOptions& options = {});
+
+/// One match, without any test but this: no value where its rays are parallel or meet behind a view.
+std::optional<CloudPoint> triangulate_one(const TwoViews& views, const Match& match, const RayPair& rays);
 
 }  // namespace raysteer::calib::scene
