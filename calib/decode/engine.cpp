@@ -13,6 +13,9 @@ namespace {
 /// Noise is estimated from every 16th row and every 4th column: 47,000 pixels of 3 million.
 constexpr int kSampledRows = 16;
 constexpr int kSampledColumns = 4;
+/// Lines across the stripes from which the borders' places are learnt: each border is crossed by most of them.
+constexpr int kSampledLines = 96;
+constexpr int kColumnsTogether = 8;
 /// Where the frames tell nothing about their noise: a camera of 1.5 DN and 40 electrons a DN.
 constexpr double kUsualReadSigma = 1.5;
 constexpr double kUsualElectrons = 40;
@@ -104,6 +107,8 @@ Status Engine<T>::push(ImageView<const T> frame) {
       if (plan_.axis(axis).gray) {
         gray(axis).store = GrayStore<T>(width_, height_);
         gray(axis).store.clear_rows(0, height_);
+        gray(axis).lines = GrayStore<T>(axis == Axis::kX ? width_ : height_, lines(axis));
+        gray(axis).lines.clear_rows(0, lines(axis));
       }
     }
     if (phases_.empty()) {
@@ -189,6 +194,7 @@ void Engine<T>::fold_frame(Axis axis, int bit, ImageView<const T> p, ImageView<c
     fold(role, p.row(y), q.row(y), width_, gray(axis).store.row(y));
   }
   sample_noise(axis, role, p, q);
+  sample_lines(axis, role, p, q);
 }
 
 template <class T>
@@ -212,29 +218,78 @@ void Engine<T>::fold_threshold(const Pattern& pattern, ImageView<const T> frame)
 
 template <class T>
 void Engine<T>::sample_noise(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
-  // Pattern plus inverse is white plus black, whatever the bit: from one coarse bit to the next only noise changes.
+  // Pattern plus inverse is white plus black, whatever the bit: from one coarse bit to the next only noise changes, and
+  // some global light, which a neighbouring pixel shares.
   if (!role.coarse) {
     return;
   }
   GrayState& state = gray(axis);
   const auto saturated = static_cast<int>(options_.saturation * full_scale_);
-  std::size_t place = 0;
-  const int columns = (width_ + kSampledColumns - 1) / kSampledColumns;
+  const int columns = (width_ - 1) / kSampledColumns;
   const int rows = (height_ + kSampledRows - 1) / kSampledRows;
-  state.sampled_sum.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  state.sampled_sum.resize(2 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const auto sum = [&](int x, int y) {
+    const int high = std::max(p(x, y), q(x, y));
+    return high < saturated ? p(x, y) + q(x, y) : -1;
+  };
+  int* before = state.sampled_sum.data();
   for (int y = 0; y < height_; y += kSampledRows) {
-    for (int x = 0; x < width_; x += kSampledColumns, ++place) {
-      const int low = std::min(p(x, y), q(x, y));
-      const int high = std::max(p(x, y), q(x, y));
-      const int sum = high < saturated ? low + high : -1;
-      const int before = state.sampled_sum[place];
-      if (state.sampled && sum >= 0 && before >= 0) {
-        estimate_.add(0.5 * sum, sum - before, 4);
+    for (int k = 0; k < columns; ++k, before += 2) {
+      const int here = sum(kSampledColumns * k, y);
+      const int beside = sum(kSampledColumns * k + 1, y);
+      if (state.sampled && std::min({here, beside, before[0], before[1]}) >= 0) {
+        estimate_.add(0.5 * here, here - before[0] - (beside - before[1]), 8);
       }
-      state.sampled_sum[place] = sum;
+      before[0] = here;
+      before[1] = beside;
     }
   }
   state.sampled = true;
+}
+
+template <class T>
+int Engine<T>::lines(Axis axis) const {
+  return std::min(kSampledLines, axis == Axis::kX ? height_ : width_);
+}
+
+template <class T>
+int Engine<T>::line_place(Axis axis, int line) const {
+  // Rows one by one; columns by eight, which share cache lines.
+  const int size = axis == Axis::kX ? height_ : width_;
+  const int together = axis == Axis::kX ? 1 : kColumnsTogether;
+  const int count = lines(axis);
+  const int groups = (count + together - 1) / together;
+  return std::min(static_cast<int>((line / together + 0.5) * size / groups) - together / 2 + line % together, size - 1);
+}
+
+template <class T>
+void Engine<T>::sample_lines(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
+  GrayState& state = gray(axis);
+  for (int line = 0; line < lines(axis); ++line) {
+    const int place = line_place(axis, line);
+    if (axis == Axis::kX) {
+      fold(role, p.row(place), q.row(place), width_, state.lines.row(line));
+      continue;
+    }
+    state.line_p.resize(static_cast<std::size_t>(height_));
+    state.line_q.resize(static_cast<std::size_t>(height_));
+    for (int v = 0; v < height_; ++v) {
+      state.line_p[v] = p(place, v);
+      state.line_q[v] = q(place, v);
+    }
+    fold(role, state.line_p.data(), state.line_q.data(), height_, state.lines.row(line));
+  }
+}
+
+template <class T>
+BorderTable Engine<T>::learn(Axis axis) {
+  const AxisPlan& plan = plan_.axis(axis);
+  if (!options_.sub_pixel || !plan.phases.empty()) {
+    return {};
+  }
+  GrayLimits line_limits = limits(plan);
+  line_limits.width = axis == Axis::kX ? width_ : height_;
+  return learn_borders(gray(axis).lines, lines(axis), line_limits);
 }
 
 template <class T>
@@ -321,7 +376,9 @@ Result<CodeMap> Engine<T>::finish() {
       const bool x = which == Axis::kX;
       Image<float> none;
       const bool place = axis.phases.empty();
-      GrayAxis<T> rows(which, *axis.gray, limits(axis), height_, x ? map.code_x : map.code_y,
+      const BorderTable borders = learn(which);
+      (x ? map.diagnostics.border_displacement_x : map.diagnostics.border_displacement_y) = borders.displacement;
+      GrayAxis<T> rows(which, *axis.gray, limits(axis), borders, height_, x ? map.code_x : map.code_y,
                        place ? (x ? map.x : map.y) : none, place ? (x ? map.variance_x : map.variance_y) : none);
       const bool references = plan_.white && plan_.black;
       for (int v = 0; v < height_; ++v) {

@@ -30,6 +30,8 @@ class Engine {
   struct GrayState {
     std::vector<BitRole> roles;  ///< by bit
     GrayStore<T> store;
+    GrayStore<T> lines;  ///< sums of sampled lines across the stripes
+    std::vector<T> line_p, line_q;
     std::vector<int> sampled_sum;  ///< p + q of the coarse bit before, at the sampled pixels
     bool sampled = false;
   };
@@ -41,8 +43,12 @@ class Engine {
   void fold_waiting();
   bool threshold_known(const Pattern& pattern) const;
   void sample_noise(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q);
+  void sample_lines(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q);
+  int lines(Axis axis) const;
+  int line_place(Axis axis, int line) const;
   void sample_phase_noise(const PhaseSums& sums);
   GrayLimits limits(const AxisPlan& axis) const;
+  BorderTable learn(Axis axis);
   CodeMap make_map() const;
   void place_phases(Axis which, CodeMap& map);
   Result<CodeMap> complete(CodeMap map);

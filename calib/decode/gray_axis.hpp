@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "calib/decode/border_table.hpp"
 #include "calib/decode/code_map.hpp"
 #include "calib/decode/gray_rows.hpp"
 #include "hal/base/pattern.hpp"
@@ -17,8 +18,8 @@ template <class T>
 class GrayAxis {
  public:
   /// Writes into `code`, and where they are not empty into `value` and `variance`, all of the camera's size.
-  GrayAxis(Axis axis, const PatternBlock& block, const GrayLimits& limits, int height, Image<std::uint16_t>& code,
-           Image<float>& value, Image<float>& variance);
+  GrayAxis(Axis axis, const PatternBlock& block, const GrayLimits& limits, const BorderTable& borders, int height,
+           Image<std::uint16_t>& code, Image<float>& value, Image<float>& variance);
 
   /// Row v = 0, 1, 2 ... Reasons are or-ed into `mask`.
   void row(const GraySums<T>& sums, const T* white, const T* black, std::uint8_t* mask);
@@ -29,13 +30,14 @@ class GrayAxis {
   void place_x(const GraySums<T>& sums);
   void place_y(const GraySums<T>& sums);
   void give_out_y(int v);
-  float* gap(std::vector<float>& store, int index) const {
-    return store.data() + static_cast<std::size_t>(index) * static_cast<std::size_t>(stride_);
-  }
+  /// Row `index` of the gaps, from pixel `first` on.
+  GapRow gap(int index, int first = 0);
+  void place(int v);
 
   Axis axis_;
   PatternBlock block_;
   GrayLimits limits_;
+  const BorderTable& borders_;
   int height_;
   Image<std::uint16_t>& code_;
   Image<float>& value_;
@@ -45,11 +47,11 @@ class GrayAxis {
   int reach_ = 0;   ///< gaps searched on either side
   int stride_ = 0;  ///< floats of one row of gaps
   int gap_rows_ = 0;
-  std::vector<float> place_a_, place_b_, variance_a_, variance_b_;
+  std::vector<float> gaps_;   ///< place, number, variance of the border nearest to a, then to b
   std::vector<float> noise_;  ///< variance of p - q, this row and the one before
   std::vector<T> previous_;   ///< finest, weakest, weakest_bit of the row before
   std::vector<float> scratch_;
-  std::vector<const float*> pointers_;
+  std::vector<GapRow> before_, after_;
 };
 
 }  // namespace raysteer::calib::decode

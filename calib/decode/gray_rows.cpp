@@ -78,60 +78,83 @@ template <class T>
   }
 }
 
+/// The nearest borders in each gap, seen from either pixel.
+///
+/// The code without its last bit, h, steps at even borders 2h; bit 0 changes at odd ones. So a border is numbered by
+/// what changes and not by the codes before and after: an undecided bit 0 leaves the others where they are.
 template <class T>
 [[gnu::always_inline]] inline void find_row_borders(const EdgeSource<T>& a, const EdgeSource<T>& b, int count,
                                                     const GapRow& gaps) {
   const std::uint16_t* __restrict code_a = a.code;
   const std::uint16_t* __restrict code_b = b.code;
-  float* __restrict place_a = gaps.place_a;
-  float* __restrict place_b = gaps.place_b;
-  float* __restrict variance_a = gaps.variance_a;
-  float* __restrict variance_b = gaps.variance_b;
+  const T* __restrict finest_a = a.finest;
+  const T* __restrict finest_b = b.finest;
+  const T* __restrict weakest_a = a.weakest;
+  const T* __restrict weakest_b = b.weakest;
+  const T* __restrict label_a = a.weakest_bit;
+  const T* __restrict label_b = b.weakest_bit;
+  const float* __restrict noise_a = a.variance;
+  const float* __restrict noise_b = b.variance;
+  float* __restrict out_place_a = gaps.place_a;
+  float* __restrict out_place_b = gaps.place_b;
+  float* __restrict out_number_a = gaps.number_a;
+  float* __restrict out_number_b = gaps.number_b;
+  float* __restrict out_variance_a = gaps.variance_a;
+  float* __restrict out_variance_b = gaps.variance_b;
   for (int i = 0; i < count; ++i) {
     const int ca = code_a[i];
     const int cb = code_b[i];
-    const int change = cb - ca;
-    const int rise = change > 0 ? 1 : 0;
-    const float sign = change > 0 ? 1.0F : -1.0F;
-    const float fine_a = a.finest[i];
-    const float fine_b = b.finest[i];
-    const float weak_a = a.weakest[i];
-    const float weak_b = b.weakest[i];
-    const int label_a = a.weakest_bit[i];
-    const int label_b = b.weakest_bit[i];
-    const float noise = 0.5F * (a.variance[i] + b.variance[i]);
-    const bool near = change >= -2 && change <= 2;
-    const bool same = change == 0 && ca != CodeMap::kNoCode;
-    // The difference falls from fine_a at pixel a to -fine_b at b: linear between, 0 at the border.
-    const auto border = [&](int n, float* place, float* variance) {
-      const bool odd = (n & 1) != 0;
-      const int label = border_label(n);
-      const float at_a = odd ? fine_a : weak_a;
-      const float at_b = odd ? fine_b : weak_b;
-      const float sum = at_a + at_b;
-      const bool found = near && sum > 0 && (odd || (label_a == label && label_b == label));
-      const float inverse = 1.0F / std::max(sum, 1.0F);
-      const float f = at_a * inverse;
-      const float spread = noise * (f * f + (1 - f) * (1 - f)) * inverse * inverse;
-      place[i] = f;
-      variance[i] = same ? GapRow::kSame : found ? sign * spread : GapRow::kLost;
-    };
-    border(ca + rise, place_a, variance_a);
-    border(cb + 1 - rise, place_b, variance_b);
+    const int ha = ca >> 1;
+    const int hb = cb >> 1;
+    const int step = hb - ha;
+    const bool lost = ca == CodeMap::kNoCode || cb == CodeMap::kNoCode || step > 1 || step < -1;
+    const float noise = 0.5F * (noise_a[i] + noise_b[i]);
+
+    // Even border: some bit but the last; its difference is the weakest at both pixels.
+    const int even = 2 * std::max(ha, hb);
+    const float even_a = weakest_a[i];
+    const float even_b = weakest_b[i];
+    const int even_label = border_label(even);
+    const bool has_even = step != 0 && label_a[i] == even_label && label_b[i] == even_label && even_a + even_b > 0;
+    // Odd border: the last bit. Where h steps too, the codes' parity says on which side of the even border it lies.
+    const bool has_odd = ((ca ^ ha ^ cb ^ hb) & 1) != 0;
+    const bool at_a = step == 0 || (step > 0) == ((ca & 1) == 0);
+    const int odd = 2 * (at_a ? ha : hb) + 1;
+    const float odd_a = finest_a[i];
+    const float odd_b = finest_b[i];
+
+    // The difference falls from its value at a to its negative at b: linear between, 0 at the border.
+    const float even_scale = 1.0F / std::max(even_a + even_b, 1.0F);
+    const float odd_scale = 1.0F / std::max(odd_a + odd_b, 1.0F);
+    const float fe = even_a * even_scale;
+    const float fo = odd_a * odd_scale;
+    const float ve = noise * even_scale * even_scale * (fe * fe + (1 - fe) * (1 - fe));
+    const float vo = noise * odd_scale * odd_scale * (fo * fo + (1 - fo) * (1 - fo));
+    const bool even_first = has_even && (!has_odd || fe <= fo);
+    const bool even_last = has_even && (!has_odd || fe > fo);
+    const bool none = !has_even && !has_odd;
+    out_place_a[i] = even_first ? fe : fo;
+    out_number_a[i] = static_cast<float>(even_first ? even : odd);
+    out_variance_a[i] = lost ? GapRow::kLost : none ? GapRow::kNone : even_first ? ve : vo;
+    out_place_b[i] = even_last ? fe : fo;
+    out_number_b[i] = static_cast<float>(even_last ? even : odd);
+    out_variance_b[i] = lost ? GapRow::kLost : none ? GapRow::kNone : even_last ? ve : vo;
   }
 }
 
 /// Takes gap k where nothing was found yet; returns whether some pixel still has nothing.
-[[gnu::always_inline]] inline bool search_gap(const float* __restrict place, const float* __restrict variance,
-                                              float shift, int count, float* __restrict found_place,
+[[gnu::always_inline]] inline bool search_gap(const float* __restrict place, const float* __restrict number,
+                                              const float* __restrict variance, float shift, int count,
+                                              float* __restrict found_place, float* __restrict found_number,
                                               float* __restrict found_variance) {
   int open = 0;
   for (int i = 0; i < count; ++i) {
-    const bool take = found_variance[i] == GapRow::kSame;
+    const bool take = found_variance[i] == GapRow::kNone;
     const float here = take ? variance[i] : found_variance[i];
     found_place[i] = take ? place[i] + shift : found_place[i];
+    found_number[i] = take ? number[i] : found_number[i];
     found_variance[i] = here;
-    open |= here == GapRow::kSame ? 1 : 0;
+    open |= here == GapRow::kNone ? 1 : 0;
   }
   return open != 0;
 }
@@ -139,39 +162,55 @@ template <class T>
 [[gnu::always_inline]] inline void place_row(const BorderSearch& search, const std::uint16_t* __restrict code,
                                              int count, float* __restrict value, float* __restrict variance,
                                              float* __restrict scratch) {
-  float* __restrict before = scratch;
-  float* __restrict before_variance = scratch + count;
-  float* __restrict after = scratch + 2 * static_cast<std::ptrdiff_t>(count);
-  float* __restrict after_variance = scratch + 3 * static_cast<std::ptrdiff_t>(count);
-  std::fill(before_variance, before_variance + count, GapRow::kSame);
-  std::fill(after_variance, after_variance + count, GapRow::kSame);
+  float* __restrict side[6];
+  for (int k = 0; k < 6; ++k) {
+    side[k] = scratch + k * static_cast<std::ptrdiff_t>(count);
+  }
+  std::fill(side[2], side[2] + count, GapRow::kNone);
+  std::fill(side[5], side[5] + count, GapRow::kNone);
   for (int k = 0; k < search.reach; ++k) {
     const float shift = -1.0F - static_cast<float>(k);
-    if (!search_gap(search.place_before[k], search.variance_before[k], shift, count, before, before_variance)) {
+    const GapRow& gap = search.before[k];
+    if (!search_gap(gap.place_b, gap.number_b, gap.variance_b, shift, count, side[0], side[1], side[2])) {
       break;
     }
   }
   for (int k = 0; k < search.reach; ++k) {
     const float shift = static_cast<float>(k);
-    if (!search_gap(search.place_after[k], search.variance_after[k], shift, count, after, after_variance)) {
+    const GapRow& gap = search.after[k];
+    if (!search_gap(gap.place_a, gap.number_a, gap.variance_a, shift, count, side[3], side[4], side[5])) {
       break;
     }
   }
   const float stripe = search.stripe_px;
   const float origin = -search.offset_px - 0.5F;
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const float* __restrict place_before = side[0];
+  const float* __restrict number_before = side[1];
+  const float* __restrict variance_before = side[2];
+  const float* __restrict place_after = side[3];
+  const float* __restrict number_after = side[4];
+  const float* __restrict variance_after = side[5];
   for (int i = 0; i < count; ++i) {
-    const float vb = before_variance[i];
-    const float va = after_variance[i];
-    const float span = after[i] - before[i];
-    // Signs agree: the code rises, or falls, through the pixel. Otherwise it turns here, or a side is missing.
-    const bool between = vb * va > 0 && std::abs(vb) < GapRow::kSame && std::abs(va) < GapRow::kSame && span > 0;
-    const float scale = 1.0F / std::max(span, 1e-3F);
-    const float t = -before[i] * scale;
-    const float inside = between ? (va > 0 ? t : 1 - t) : 0.5F;
-    const float spread = ((1 - t) * (1 - t) * std::abs(vb) + t * t * std::abs(va)) * scale * scale;
+    const float vb = variance_before[i];
+    const float va = variance_after[i];
+    const float span = place_after[i] - place_before[i];
+    const float from = search.border == nullptr ? number_before[i] : search.border[static_cast<int>(number_before[i])];
+    const float to = search.border == nullptr ? number_after[i] : search.border[static_cast<int>(number_after[i])];
+    const float rise = to - from;
+    // Not between two borders: a side is missing, or the surface turns here and shows the same border twice.
+    const bool between =
+        vb > 0 && va > 0 && vb < GapRow::kNone && va < GapRow::kNone && number_before[i] != number_after[i];
+    const float t = -place_before[i] / std::max(span, 1e-3F);
+    const float slope = rise / std::max(span, 0.1F);
+    const float weight_before = (1 - t) * (1 - t);
+    const float weight_after = t * t;
+    const float spread = slope * slope * (weight_before * vb + weight_after * va) +
+                         search.excess_variance * (weight_before + weight_after);
     const bool coded = code[i] != CodeMap::kNoCode;
-    value[i] = coded ? (static_cast<float>(code[i]) + inside) * stripe + origin : kNan;
+    const float middle = static_cast<float>(code[i]) + 0.5F;
+    const float number = between ? from + t * rise : middle;
+    value[i] = coded ? number * stripe + origin : kNan;
     variance[i] = coded ? (between ? spread : 1.0F / 12.0F) * stripe * stripe : kNan;
   }
 }

@@ -38,16 +38,17 @@ struct EdgeSource {
   const float* variance;
 };
 
-/// Borders in the gaps between pixels a[i] and b[i]. Both pixels have a border here; it is the same one unless the code
-/// changes by two.
+/// Borders in the gaps between pixels a[i] and b[i]. Border n lies between codes n - 1 and n. A gap may hold two: then
+/// each pixel has its own nearest.
 struct GapRow {
-  float* place_a;  ///< of the border of a's stripe, 0 at a to 1 at b
-  float* place_b;  ///< of the border of b's stripe, 0 at a to 1 at b
-  /// Variance of the place, px^2, with the sign of the code's change from a to b. kSame: the code does not change.
-  /// kLost: it changes, but not by one or two stripes, or not by a bit whose difference was kept.
+  float* place_a;  ///< of the border nearest to a: 0 at a, 1 at b
+  float* place_b;  ///< of the border nearest to b: 0 at a, 1 at b
+  float* number_a;
+  float* number_b;
+  /// Of the place, px^2. kNone: no border here. kLost: a pixel is not decoded, or the codes lie too far apart.
   float* variance_a;
   float* variance_b;
-  static constexpr float kSame = std::numeric_limits<float>::infinity();
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
   static constexpr float kLost = 0;
 };
 
@@ -56,22 +57,19 @@ void find_borders(const EdgeSource<std::uint16_t>& a, const EdgeSource<std::uint
                   const GapRow& gaps);
 
 /// Coordinates of a row of pixels from the nearest border on either side, each at most `reach` gaps away.
-///
-/// place_before[k], variance_before[k]: gap k+1 before the pixel (rows or columns), as its nearer pixel b saw it;
-/// place_after[k], variance_after[k]: gap k after it, as its nearer pixel a saw it.
 struct BorderSearch {
-  const float* const* place_before;
-  const float* const* variance_before;
-  const float* const* place_after;
-  const float* const* variance_after;
+  const GapRow* before;  ///< [k]: gap k + 1 before each pixel
+  const GapRow* after;   ///< [k]: gap k after each pixel
   int reach;
   float stripe_px;
   float offset_px;
+  const float* border;    ///< place of border n in stripes; null: n
+  float excess_variance;  ///< of a border's place, stripes^2
 };
 
 /// `value` in projector px and its variance; NaN where the code is kNoCode. A pixel without a border on both sides gets
 /// the middle of its stripe and the variance of an even spread over it, stripe^2 / 12.
-/// `scratch` holds 4 * count floats.
+/// `scratch` holds 6 * count floats.
 void place_between_borders(const BorderSearch& search, const std::uint16_t* code, int count, float* value,
                            float* variance, float* scratch);
 
