@@ -6,6 +6,7 @@ namespace raysteer::host::cli {
 
 const CommandTable& all_commands() {
   static constexpr std::array kCommands{
+      CommandRow{"scan", scan},
       CommandRow{"explain", explain},
   };
   static constexpr std::array kGroups{

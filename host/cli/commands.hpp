@@ -31,5 +31,6 @@ const CommandTable& all_commands();
 
 // One function a command, each defined in the file of its name.
 std::unique_ptr<Command> explain();
+std::unique_ptr<Command> scan();
 
 }  // namespace raysteer::host::cli
