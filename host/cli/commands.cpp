@@ -6,8 +6,8 @@ namespace raysteer::host::cli {
 
 const CommandTable& all_commands() {
   static constexpr std::array kCommands{
-      CommandRow{"scan", scan},
-      CommandRow{"explain", explain},
+      CommandRow{"scan", scan}, CommandRow{"report", report},         CommandRow{"explain", explain},
+      CommandRow{"help", help}, CommandRow{"completion", completion},
   };
   static constexpr std::array kGroups{
       GroupRow{"session", "Look at recorded sessions"},

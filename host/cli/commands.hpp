@@ -30,7 +30,10 @@ struct CommandTable {
 const CommandTable& all_commands();
 
 // One function a command, each defined in the file of its name.
+std::unique_ptr<Command> completion();
 std::unique_ptr<Command> explain();
+std::unique_ptr<Command> help();
+std::unique_ptr<Command> report();
 std::unique_ptr<Command> scan();
 
 }  // namespace raysteer::host::cli

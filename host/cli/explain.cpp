@@ -6,6 +6,7 @@
 
 #include "hal/base/nearest.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/manual.hpp"
 
 namespace raysteer::host::cli {
 namespace {
@@ -46,15 +47,21 @@ class Explain : public Command {
   void declare(Options& options) override {
     options.argument("CODE", &code_, "an error code or its name").is_required = false;
     options.flag("--list", list_, "list all codes");
+    options.flag("--markdown", markdown_, "print docs/errors.md");
   }
 
   Result<ExitCode> run(Context& context) override {
-    if (list_) {
+    if (markdown_) {
+      context.print(errors_markdown());
+    }
+    if (list_ || markdown_) {
       context.json()["errors"] = Json::array();
       for (const RCode rcode : all_rcodes()) {
         const Explanation& row = raysteer::explain(rcode);
         context.json()["errors"].push_back(to_json(rcode));
-        context.print(fmt::format("{}  {:<28} {}\n", to_string(rcode), row.name, row.sentence));
+        if (list_) {
+          context.print(fmt::format("{}  {:<28} {}\n", to_string(rcode), row.name, row.sentence));
+        }
       }
       return ExitCode::kDone;
     }
@@ -73,6 +80,7 @@ class Explain : public Command {
  private:
   std::string code_;
   bool list_ = false;
+  bool markdown_ = false;
 };
 
 }  // namespace

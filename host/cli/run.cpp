@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "host/cli/cancel.hpp"
+#include "host/cli/complete.hpp"
 #include "host/cli/find_command.hpp"
 #include "host/cli/help.hpp"
 #include "host/cli/output_folder.hpp"
@@ -112,6 +113,12 @@ bool has(const std::vector<std::string>& words, std::initializer_list<std::strin
 
 int run(const CommandTable& table, std::vector<std::string> arguments) {
   listen_for_signals();
+  if (!arguments.empty() && arguments.front() == "__complete") {  // what the shells' adaptors call
+    for (const std::string& line : complete(table, {arguments.begin() + 1, arguments.end()})) {
+      fmt::print("{}\n", line);
+    }
+    return static_cast<int>(ExitCode::kDone);
+  }
   CommonOptions early;  // how to print errors before options are parsed
   early.json = has(arguments, {"--json"});
   const Result<Found> found = find_command(table, arguments);
