@@ -11,13 +11,8 @@
 namespace raysteer::calib::solve {
 
 /// Tries BC4, BC5 and BC8 on camera `device`: views are left out in turn, their poses fitted to every second corner,
-/// and the others are predicted. BC5 must be 1 % better than BC4, BC8 10 % better than both, and monotonic. `alone`
+/// and the others are predicted. BC5 must be 3 % better than BC4, BC8 10 % better than both, and monotonic. `alone`
 /// (the camera by itself) comes back with the chosen model; `trials` gets a row each. Errors: kSolverDiverged.
 Status choose_lens(const Observations& observations, std::size_t device, State& alone, std::vector<LensTrial>& trials);
-
-/// Root mean square two-dimensional error of held-out corners, `folds` groups of views left out in turn, for
-/// measurements of any devices. Lengths of the single errors go to `errors` when given. Errors of the solver pass.
-Result<double> held_out_error(const Measurements& measurements, const State& start, int folds,
-                              std::vector<double>* errors = nullptr);
 
 }  // namespace raysteer::calib::solve

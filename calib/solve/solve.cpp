@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "calib/solve/adjust.hpp"
 #include "calib/solve/agreement.hpp"
@@ -72,6 +73,16 @@ Measurements keep(const Measurements& all, const Flags& flags) {
     }
   }
   return kept;
+}
+
+// Decoded pixels and the panel coordinates of corners come from the same light: with pixels, the projector's corners
+// only start the solve, decide which views agree, and are reported. Counting them again would make sigma too small.
+Measurements without_double_counting(Measurements measurements) {
+  if (!measurements.pixels.empty()) {
+    const int projector = measurements.pixels.front().projector;
+    std::erase_if(measurements.corners, [&](const CornerMeasurement& corner) { return corner.device == projector; });
+  }
+  return measurements;
 }
 
 int unknowns(const State& state, const Measurements& measurements) {
@@ -289,7 +300,7 @@ Result<Solution> solve(const Observations& given, const SolveOptions& options) {
   Measurements all = collect(observations, used);
   measure_robustly(state, all);
   measure_pixel_floor(state, all);
-  if (auto report = adjust(all, {.robust = true}, state); !report) {
+  if (auto report = adjust(without_double_counting(all), {.robust = true}, state); !report) {
     return report.error();
   }
   measure_robustly(state, all);
@@ -298,7 +309,7 @@ Result<Solution> solve(const Observations& given, const SolveOptions& options) {
   // Twice: the sigma of the kept ones is a better gate than the first, robust one.
   for (int round = 0; round < 2; ++round) {
     const Measurements kept = keep(all, flags);
-    const auto report = adjust(kept, {}, state);
+    const auto report = adjust(without_double_counting(kept), {}, state);
     if (!report) {
       return report.error();
     }
@@ -317,8 +328,7 @@ Result<Solution> solve(const Observations& given, const SolveOptions& options) {
     }
   }
 
-  const Measurements kept = keep(all, flags);
-  const auto sigma = covariance(kept, state);
+  const auto sigma = covariance(without_double_counting(keep(all, flags)), state);
   if (!sigma) {
     return sigma.error();
   }
@@ -380,7 +390,7 @@ Measurements kept_measurements(const Observations& observations, const Solution&
     }
   }
   kept.pixel_floor_px = solution.pixel_floor_px;
-  return kept;
+  return without_double_counting(std::move(kept));
 }
 
 }  // namespace raysteer::calib::solve
