@@ -15,7 +15,9 @@ constexpr int kSampledRows = 16;
 constexpr int kSampledColumns = 4;
 /// Lines across the stripes from which the borders' places are learnt: each border is crossed by most of them.
 constexpr int kSampledLines = 96;
-constexpr int kColumnsTogether = 8;
+constexpr int kColumnsTogether = 16;
+/// Rows whose sums stay in the second-level cache, 16 x 2048 x 20 bytes = 640 kB at most.
+constexpr int kBandRows = 8;
 /// Where the frames tell nothing about their noise: a camera of 1.5 DN and 40 electrons a DN.
 constexpr double kUsualReadSigma = 1.5;
 constexpr double kUsualElectrons = 40;
@@ -91,13 +93,28 @@ void Engine<T>::restart() {
 }
 
 template <class T>
-Status Engine<T>::push(ImageView<const T> frame) {
+Status Engine<T>::check_frame(ImageView<const T> frame, int index) const {
   if (frame.width() != width_ || frame.height() != height_) {
     return fail(RCode::kFrameSize,
-                "frame " + std::to_string(next_ + 1) + " is " + size_text(frame.width(), frame.height()) +
+                "frame " + std::to_string(index + 1) + " is " + size_text(frame.width(), frame.height()) +
                     ", expected " + size_text(width_, height_),
-                next_);
+                index);
   }
+  return ok();
+}
+
+template <class T>
+void Engine<T>::start(Axis axis, int rows) {
+  GrayState& state = gray(axis);
+  state.store = GrayStore<T>(width_, rows);
+  state.store.clear_rows(0, rows);
+  state.lines = GrayStore<T>(axis == Axis::kX ? width_ : height_, lines(axis));
+  state.lines.clear_rows(0, lines(axis));
+}
+
+template <class T>
+Status Engine<T>::push(ImageView<const T> frame) {
+  RAYSTEER_TRY(check_frame(frame, next_));
   if (next_ >= static_cast<int>(plan_.frames.size())) {
     return fail(RCode::kFrameCount,
                 "the sequence has " + std::to_string(plan_.frames.size()) + " frames, one more came", next_);
@@ -105,10 +122,7 @@ Status Engine<T>::push(ImageView<const T> frame) {
   if (next_ == 0) {
     for (const Axis axis : {Axis::kX, Axis::kY}) {
       if (plan_.axis(axis).gray) {
-        gray(axis).store = GrayStore<T>(width_, height_);
-        gray(axis).store.clear_rows(0, height_);
-        gray(axis).lines = GrayStore<T>(axis == Axis::kX ? width_ : height_, lines(axis));
-        gray(axis).lines.clear_rows(0, lines(axis));
+        start(axis, height_);
       }
     }
     if (phases_.empty()) {
@@ -203,17 +217,21 @@ void Engine<T>::fold_threshold(const Pattern& pattern, ImageView<const T> frame)
   const Axis axis = pattern.block.axis;
   const AxisPlan& plan = plan_.axis(axis);
   std::vector<T> inverse(static_cast<std::size_t>(width_));
-  const int most = static_cast<int>(full_scale_);
   for (int y = 0; y < height_; ++y) {
     const T* p = frame.row(y);
     for (int x = 0; x < width_; ++x) {
       const int sum = plan.threshold == Threshold::kPhaseMean
                           ? static_cast<int>(std::lround(2 * phases_[plan.phases.front()].mean(x, y)))
                           : white_(x, y) + black_(x, y);
-      inverse[x] = static_cast<T>(std::clamp(sum - p[x], 0, most));
+      inverse[x] = inverse_of(p[x], sum);
     }
     fold(gray(axis).roles[pattern.bit], p, inverse.data(), width_, gray(axis).store.row(y));
   }
+}
+
+template <class T>
+T Engine<T>::inverse_of(T pattern, int sum) const {
+  return static_cast<T>(std::clamp(sum - pattern, 0, static_cast<int>(full_scale_)));
 }
 
 template <class T>
@@ -254,7 +272,7 @@ int Engine<T>::lines(Axis axis) const {
 
 template <class T>
 int Engine<T>::line_place(Axis axis, int line) const {
-  // Rows one by one; columns by eight, which share cache lines.
+  // Rows one by one; columns some together, which share cache lines.
   const int size = axis == Axis::kX ? height_ : width_;
   const int together = axis == Axis::kX ? 1 : kColumnsTogether;
   const int count = lines(axis);
@@ -326,7 +344,7 @@ GrayLimits Engine<T>::limits(const AxisPlan& axis) const {
   limits.min_difference2 = static_cast<float>(dn(options_.min_difference_dn) * dn(options_.min_difference_dn));
   limits.min_contrast = static_cast<float>(dn(options_.min_contrast_dn));
   limits.saturation = static_cast<float>(options_.saturation * full_scale_);
-  limits.finest_coarse = axis.gray->bits > 2;
+  limits.coarse = axis.gray->bits > 2;
   limits.codes = codes_of(*axis.gray, axis.panel);
   limits.width = width_;
   return limits;
@@ -362,6 +380,28 @@ Result<CodeMap> Engine<T>::finish() {
   for (const PhaseSums& phase : phases_) {
     sample_phase_noise(phase);
   }
+  fit_noise();
+  CodeMap map = make_map();
+  Placers placers = make_placers(map);
+  const bool references = plan_.white && plan_.black;
+  for (auto& [axis, placer] : placers) {
+    for (int v = 0; v < height_; ++v) {
+      placer.row(gray(axis).store.row(v), references ? white_.row(v) : nullptr, references ? black_.row(v) : nullptr,
+                 map.mask.row(v));
+    }
+    placer.finish();
+  }
+  for (const Axis axis : {Axis::kX, Axis::kY}) {
+    if (!plan_.axis(axis).phases.empty()) {
+      place_phases(axis, map);
+    }
+  }
+  restart();
+  return complete(std::move(map));
+}
+
+template <class T>
+void Engine<T>::fit_noise() {
   if (options_.read_sigma_dn > 0 || options_.electrons_per_dn > 0) {
     noise_.read_sigma_dn = options_.read_sigma_dn;
     noise_.electrons_per_dn =
@@ -369,30 +409,26 @@ Result<CodeMap> Engine<T>::finish() {
   } else {
     noise_ = estimate_.fit(noise_);
   }
-  CodeMap map = make_map();
-  for (const Axis which : {Axis::kX, Axis::kY}) {
-    const AxisPlan& axis = plan_.axis(which);
-    if (axis.gray) {
-      const bool x = which == Axis::kX;
-      Image<float> none;
-      const bool place = axis.phases.empty();
-      const BorderTable borders = learn(which);
-      (x ? map.diagnostics.border_displacement_x : map.diagnostics.border_displacement_y) = borders.displacement;
-      GrayAxis<T> rows(which, *axis.gray, limits(axis), borders, height_, x ? map.code_x : map.code_y,
-                       place ? (x ? map.x : map.y) : none, place ? (x ? map.variance_x : map.variance_y) : none);
-      const bool references = plan_.white && plan_.black;
-      for (int v = 0; v < height_; ++v) {
-        rows.row(gray(which).store.row(v), references ? white_.row(v) : nullptr, references ? black_.row(v) : nullptr,
-                 map.mask.row(v));
-      }
-      rows.finish();
+}
+
+template <class T>
+typename Engine<T>::Placers Engine<T>::make_placers(CodeMap& map) {
+  Placers placers;
+  for (const Axis axis : {Axis::kX, Axis::kY}) {
+    const AxisPlan& plan = plan_.axis(axis);
+    if (!plan.gray) {
+      continue;
     }
-    if (!axis.phases.empty()) {
-      place_phases(which, map);
-    }
+    const bool x = axis == Axis::kX;
+    BorderTable borders = learn(axis);
+    (x ? map.diagnostics.border_displacement_x : map.diagnostics.border_displacement_y) = borders.displacement;
+    // Where a phase refines the code, it alone places the pixel.
+    const bool place = options_.sub_pixel && plan.phases.empty();
+    placers.emplace_back(axis, GrayAxis<T>(axis, *plan.gray, limits(plan), std::move(borders), height_,
+                                           x ? map.code_x : map.code_y, place ? (x ? &map.x : &map.y) : nullptr,
+                                           place ? (x ? &map.variance_x : &map.variance_y) : nullptr));
   }
-  restart();
-  return complete(std::move(map));
+  return placers;
 }
 
 template <class T>
@@ -532,10 +568,74 @@ Result<CodeMap> Engine<T>::complete(CodeMap map) {
 
 template <class T>
 Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
-  for (const ImageView<const T>& frame : frames) {
-    RAYSTEER_TRY(push(frame));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    RAYSTEER_TRY(check_frame(frames[i], static_cast<int>(i)));
   }
-  return finish();
+  std::vector<Pair> pairs;
+  ImageView<const T> white, black;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Pattern& pattern = plan_.frames[i];
+    if (pattern.block.kind == PatternKind::kWhite) {
+      white = frames[i];
+    } else if (pattern.block.kind == PatternKind::kBlack) {
+      black = frames[i];
+    } else if (!pattern.block.inverse) {
+      pairs.push_back({pattern.block.axis, pattern.bit, frames[i], {}});
+    } else if (pattern.inverted != pattern.block.inverse_first) {
+      const bool second = pattern.inverted;
+      pairs.push_back({pattern.block.axis, pattern.bit, frames[second ? i - 1 : i], frames[second ? i : i - 1]});
+    }
+  }
+  for (const Axis axis : {Axis::kX, Axis::kY}) {
+    if (plan_.axis(axis).gray) {
+      start(axis, kBandRows);
+    }
+  }
+  std::vector<T> inverse(static_cast<std::size_t>(std::max(width_, height_)));
+  for (const Pair& pair : pairs) {
+    if (!pair.q.empty()) {
+      const BitRole& role = gray(pair.axis).roles[pair.bit];
+      sample_noise(pair.axis, role, pair.p, pair.q);
+      sample_lines(pair.axis, role, pair.p, pair.q);
+    }
+  }
+  fit_noise();
+  CodeMap map = make_map();
+  Placers placers = make_placers(map);
+  const bool references = plan_.white && plan_.black;
+  for (int first = 0; first < height_; first += kBandRows) {
+    const int last = std::min(first + kBandRows, height_);
+    for (const Axis axis : {Axis::kX, Axis::kY}) {
+      if (plan_.axis(axis).gray) {
+        gray(axis).store.clear_rows(0, last - first);
+      }
+    }
+    for (const Pair& pair : pairs) {
+      const BitRole& role = gray(pair.axis).roles[pair.bit];
+      const GrayStore<T>& store = gray(pair.axis).store;
+      for (int v = first; v < last; ++v) {
+        const T* p = pair.p.row(v);
+        const T* q = pair.q.empty() ? inverse.data() : pair.q.row(v);
+        if (pair.q.empty()) {
+          for (int u = 0; u < width_; ++u) {
+            inverse[u] = inverse_of(p[u], white(u, v) + black(u, v));
+          }
+        }
+        fold(role, p, q, width_, store.row(v - first));
+      }
+    }
+    for (int v = first; v < last; ++v) {
+      for (auto& [axis, placer] : placers) {
+        placer.row(gray(axis).store.row(v - first), references ? white.row(v) : nullptr,
+                   references ? black.row(v) : nullptr, map.mask.row(v));
+      }
+    }
+  }
+  for (auto& [axis, placer] : placers) {
+    placer.finish();
+  }
+  restart();
+  return complete(std::move(map));
 }
 
 template class Engine<std::uint8_t>;

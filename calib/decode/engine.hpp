@@ -36,6 +36,16 @@ class Engine {
     bool sampled = false;
   };
 
+  struct Pair {
+    Axis axis;
+    int bit;
+    ImageView<const T> p;
+    ImageView<const T> q;  ///< empty: thresholded by white and black
+  };
+  using Placers = std::vector<std::pair<Axis, GrayAxis<T>>>;
+
+  Status check_frame(ImageView<const T> frame, int index) const;
+  void start(Axis axis, int rows);
   void restart();
   GrayState& gray(Axis axis) { return axis == Axis::kX ? gray_x_ : gray_y_; }
   void fold_frame(Axis axis, int bit, ImageView<const T> p, ImageView<const T> q);
@@ -50,6 +60,9 @@ class Engine {
   GrayLimits limits(const AxisPlan& axis) const;
   BorderTable learn(Axis axis);
   CodeMap make_map() const;
+  void fit_noise();
+  Placers make_placers(CodeMap& map);
+  T inverse_of(T pattern, int sum) const;
   void place_phases(Axis which, CodeMap& map);
   Result<CodeMap> complete(CodeMap map);
   double dn(double of_255) const { return of_255 * full_scale_ / 255; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace raysteer::calib::decode {
 namespace {
@@ -15,17 +16,17 @@ constexpr int kParts = 6;
 }  // namespace
 
 template <class T>
-GrayAxis<T>::GrayAxis(Axis axis, const PatternBlock& block, const GrayLimits& limits, const BorderTable& borders,
-                      int height, Image<std::uint16_t>& code, Image<float>& value, Image<float>& variance)
+GrayAxis<T>::GrayAxis(Axis axis, const PatternBlock& block, const GrayLimits& limits, BorderTable borders, int height,
+                      Image<std::uint16_t>& code, Image<float>* value, Image<float>* variance)
     : axis_(axis),
       block_(block),
       limits_(limits),
-      borders_(borders),
+      borders_(std::move(borders)),
       height_(height),
-      code_(code),
+      code_(&code),
       value_(value),
       variance_(variance) {
-  if (value_.empty()) {
+  if (value_ == nullptr) {
     return;
   }
   const int width = limits_.width;
@@ -51,9 +52,9 @@ GapRow GrayAxis<T>::gap(int index, int first) {
 
 template <class T>
 void GrayAxis<T>::row(const GraySums<T>& sums, const T* white, const T* black, std::uint8_t* mask) {
-  const bool placed = !value_.empty();
+  const bool placed = value_ != nullptr;
   float* noise = placed ? noise_.data() + (next_ % 2) * limits_.width : nullptr;
-  classify(sums, white, black, limits_, code_.row(next_), mask, noise);
+  classify(sums, white, black, limits_, code_->row(next_), mask, noise);
   if (placed && axis_ == Axis::kX) {
     place_x(sums);
   } else if (placed) {
@@ -64,7 +65,7 @@ void GrayAxis<T>::row(const GraySums<T>& sums, const T* white, const T* black, s
 
 template <class T>
 void GrayAxis<T>::finish() {
-  if (axis_ == Axis::kY && !value_.empty()) {
+  if (axis_ == Axis::kY && value_ != nullptr) {
     for (int v = std::max(0, height_ - reach_); v < height_; ++v) {
       give_out_y(v);
     }
@@ -74,7 +75,7 @@ void GrayAxis<T>::finish() {
 template <class T>
 void GrayAxis<T>::place_x(const GraySums<T>& sums) {
   const int width = limits_.width;
-  const std::uint16_t* code = code_.row(next_);
+  const std::uint16_t* code = code_->row(next_);
   const float* noise = noise_.data() + (next_ % 2) * width;
   const EdgeSource<T> a{code, sums.finest, sums.weakest, sums.weakest_bit, noise};
   const EdgeSource<T> b{code + 1, sums.finest + 1, sums.weakest + 1, sums.weakest_bit + 1, noise + 1};
@@ -92,9 +93,9 @@ void GrayAxis<T>::place_y(const GraySums<T>& sums) {
   const int width = limits_.width;
   const T* before = previous_.data();
   if (next_ > 0) {
-    const EdgeSource<T> a{code_.row(next_ - 1), before, before + width, before + 2 * static_cast<std::ptrdiff_t>(width),
-                          noise_.data() + ((next_ + 1) % 2) * width};
-    const EdgeSource<T> b{code_.row(next_), sums.finest, sums.weakest, sums.weakest_bit,
+    const EdgeSource<T> a{code_->row(next_ - 1), before, before + width,
+                          before + 2 * static_cast<std::ptrdiff_t>(width), noise_.data() + ((next_ + 1) % 2) * width};
+    const EdgeSource<T> b{code_->row(next_), sums.finest, sums.weakest, sums.weakest_bit,
                           noise_.data() + (next_ % 2) * width};
     find_borders(a, b, width, gap((next_ - 1) % gap_rows_));
   }
@@ -122,7 +123,7 @@ void GrayAxis<T>::place(int v) {
   place_between_borders({before_.data(), after_.data(), reach_, static_cast<float>(block_.stripe_px),
                          static_cast<float>(block_.offset_px), borders_.place.empty() ? nullptr : borders_.place.data(),
                          borders_.excess_variance},
-                        code_.row(v), limits_.width, value_.row(v), variance_.row(v), scratch_.data());
+                        code_->row(v), limits_.width, value_->row(v), variance_->row(v), scratch_.data());
 }
 
 template class GrayAxis<std::uint8_t>;

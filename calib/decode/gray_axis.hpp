@@ -17,9 +17,9 @@ namespace raysteer::calib::decode {
 template <class T>
 class GrayAxis {
  public:
-  /// Writes into `code`, and where they are not empty into `value` and `variance`, all of the camera's size.
-  GrayAxis(Axis axis, const PatternBlock& block, const GrayLimits& limits, const BorderTable& borders, int height,
-           Image<std::uint16_t>& code, Image<float>& value, Image<float>& variance);
+  /// Writes into `code`, and where they are not null into `value` and `variance`, all of the camera's size.
+  GrayAxis(Axis axis, const PatternBlock& block, const GrayLimits& limits, BorderTable borders, int height,
+           Image<std::uint16_t>& code, Image<float>* value, Image<float>* variance);
 
   /// Row v = 0, 1, 2 ... Reasons are or-ed into `mask`.
   void row(const GraySums<T>& sums, const T* white, const T* black, std::uint8_t* mask);
@@ -37,11 +37,11 @@ class GrayAxis {
   Axis axis_;
   PatternBlock block_;
   GrayLimits limits_;
-  const BorderTable& borders_;
+  BorderTable borders_;
   int height_;
-  Image<std::uint16_t>& code_;
-  Image<float>& value_;
-  Image<float>& variance_;
+  Image<std::uint16_t>* code_;
+  Image<float>* value_;
+  Image<float>* variance_;
 
   int next_ = 0;    ///< row that comes next
   int reach_ = 0;   ///< gaps searched on either side

@@ -1,7 +1,7 @@
 #include "calib/decode/gray_rows.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "calib/decode/code_map.hpp"
 #include "calib/decode/vectorise.hpp"
@@ -9,15 +9,27 @@
 namespace raysteer::calib::decode {
 namespace {
 
-/// The bit that border n (between codes n - 1 and n) changes, as GraySums::weakest_bit labels it.
-[[gnu::always_inline]] inline int border_label(int n) { return std::min((n & -n) >> 1, kMostLabel); }
-
+// Written for the vectoriser: values instead of references (std::min, std::max), masks of one type instead of bool, `&`
+// and `|` instead of `&&` and `||`.
 template <class T>
+[[gnu::always_inline]] inline T lesser(T a, T b) {
+  return a < b ? a : b;
+}
+template <class T>
+[[gnu::always_inline]] inline T greater(T a, T b) {
+  return a < b ? b : a;
+}
+
+/// The bit that border n (between codes n - 1 and n) changes, as GraySums::weakest_bit labels it.
+[[gnu::always_inline]] inline int border_label(int n) { return lesser((n & -n) >> 1, kMostLabel); }
+
+template <class T, bool kReferences, bool kVariance>
 [[gnu::always_inline]] inline void classify_row(const GraySums<T>& sums, const T* __restrict white,
                                                 const T* __restrict black, const GrayLimits& limits,
                                                 std::uint16_t* __restrict code, std::uint8_t* __restrict mask,
                                                 float* __restrict variance) {
   const GrayLimits l = limits;
+  const int coarse = l.coarse ? 1 : 0;
   const T* __restrict low = sums.code_low;
   const T* __restrict high = sums.code_high;
   const T* __restrict weakest = sums.weakest;
@@ -27,54 +39,66 @@ template <class T>
   const T* __restrict unlit = sums.unlit;
   const T* __restrict coarse_unlit = sums.coarse_unlit;
   const T* __restrict coarse_lit = sums.coarse_lit;
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < l.width; ++i) {
-    unsigned value = low[i];
+    int c = low[i];
     if constexpr (sizeof(T) == 1) {
-      value |= static_cast<unsigned>(high[i]) << 8U;
+      c |= high[i] << 8;
     }
-    value ^= value >> 1U;
-    value ^= value >> 2U;
-    value ^= value >> 4U;
-    value ^= value >> 8U;
-    const int c = static_cast<int>(value);
+    c ^= c >> 1;
+    c ^= c >> 2;
+    c ^= c >> 4;
+    c ^= c >> 8;
 
-    const float d = direct[i];
-    const float dark = unlit[i];
-    const float variance_here = l.difference_floor + l.difference_slope * (d + 2 * dark);
-    const float least2 = std::max(l.min_sigma2 * variance_here, l.min_difference2);
-    const float w1 = weakest[i];
-    const float w2 = second[i];
+    const int d = direct[i];
+    const int dark = unlit[i];
+    const float variance_here = l.difference_floor + l.difference_slope * static_cast<float>(d + 2 * dark);
+    const float least2 = greater(l.min_sigma2 * variance_here, l.min_difference2);
+    const auto w1 = static_cast<float>(weakest[i]);
+    const auto w2 = static_cast<float>(second[i]);
+    const auto direct_here = static_cast<float>(d);
 
     // The pixel lies on the border whose bit is weak: either code is right. Any other weak bit is a guess.
-    const int even = (c + 1) & ~1;
-    const bool at_border = weakest_bit[i] == border_label(even);
-    bool ambiguous = (w1 * w1 < least2 && !at_border) || w2 * w2 < least2;
-    const bool weak = d * d < least2;
-    bool shadow = false;
-    float ambient = 0;
-    if (white != nullptr) {
-      const float contrast = static_cast<float>(white[i]) - static_cast<float>(black[i]);
-      shadow = contrast * std::abs(contrast) < least2 || contrast < l.min_contrast;
+    const int elsewhere = weakest_bit[i] != border_label((c + 1) & ~1) ? 1 : 0;
+    int ambiguous = ((w1 * w1 < least2 ? 1 : 0) & elsewhere) | (w2 * w2 < least2 ? 1 : 0);
+    const int weak = direct_here * direct_here < least2 ? 1 : 0;
+    int shadow = 0;
+    int ambient = 0;
+    if constexpr (kReferences) {
       ambient = black[i];
+      const auto contrast = static_cast<float>(white[i] - ambient);
+      shadow = (contrast * contrast < least2 ? 1 : 0) | (contrast < l.min_contrast ? 1 : 0);
     }
-    if (l.finest_coarse) {
-      // Xu and Aliaga: with little global light (d > g) the sign decides; with much, only values that direct or global
-      // light alone could not have made. All coarse bits pass when their extremes do.
-      const float g = 2 * (dark - ambient);
-      const float lowest = static_cast<float>(coarse_unlit[i]) - ambient;
-      const float highest = static_cast<float>(coarse_lit[i]) - ambient;
-      ambiguous = ambiguous || (d <= g && !(lowest <= d && highest >= g));
-    }
-    const bool outside = c >= l.codes;
-    const bool saturated = weak && dark >= l.saturation;
-    const unsigned reasons = (shadow ? unsigned{kShadow} : 0U) | (weak ? unsigned{kLowModulation} : 0U) |
-                             (saturated ? unsigned{kSaturated} : 0U) | (ambiguous ? unsigned{kAmbiguous} : 0U) |
-                             (outside && !ambiguous && !weak && !shadow ? unsigned{kOutside} : 0U);
+    // Xu and Aliaga: with little global light (d > g) the sign decides; with much, only values that direct or global
+    // light alone could not have made. All coarse bits pass when their extremes do.
+    const int global = 2 * (dark - ambient);
+    const int mixed = (coarse_unlit[i] - ambient > d ? 1 : 0) | (coarse_lit[i] - ambient < global ? 1 : 0);
+    ambiguous |= coarse & (d <= global ? 1 : 0) & mixed;
+    const int saturated = weak & (static_cast<float>(dark) >= l.saturation ? 1 : 0);
+    const int undecided = shadow | weak | ambiguous;
+    const int outside = (c >= l.codes ? 1 : 0) & (undecided ^ 1);
+    const int reasons =
+        shadow * kShadow | weak * kLowModulation | saturated * kSaturated | ambiguous * kAmbiguous | outside * kOutside;
     mask[i] = static_cast<std::uint8_t>(mask[i] | reasons);
-    code[i] = reasons == 0 ? static_cast<std::uint16_t>(c) : CodeMap::kNoCode;
-    if (variance != nullptr) {
+    code[i] = static_cast<std::uint16_t>(reasons == 0 ? c : int{CodeMap::kNoCode});
+    if constexpr (kVariance) {
       variance[i] = variance_here;
     }
+  }
+}
+
+template <class T>
+[[gnu::always_inline]] inline void classify_any(const GraySums<T>& sums, const T* white, const T* black,
+                                                const GrayLimits& limits, std::uint16_t* code, std::uint8_t* mask,
+                                                float* variance) {
+  if (white != nullptr && variance != nullptr) {
+    classify_row<T, true, true>(sums, white, black, limits, code, mask, variance);
+  } else if (white != nullptr) {
+    classify_row<T, true, false>(sums, white, black, limits, code, mask, variance);
+  } else if (variance != nullptr) {
+    classify_row<T, false, true>(sums, white, black, limits, code, mask, variance);
+  } else {
+    classify_row<T, false, false>(sums, white, black, limits, code, mask, variance);
   }
 }
 
@@ -101,44 +125,55 @@ template <class T>
   float* __restrict out_number_b = gaps.number_b;
   float* __restrict out_variance_a = gaps.variance_a;
   float* __restrict out_variance_b = gaps.variance_b;
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     const int ca = code_a[i];
     const int cb = code_b[i];
     const int ha = ca >> 1;
     const int hb = cb >> 1;
     const int step = hb - ha;
-    const bool lost = ca == CodeMap::kNoCode || cb == CodeMap::kNoCode || step > 1 || step < -1;
+    // A code of kNoCode is so large that its step is, too; two of them lie at the end of the range.
+    const int lost = (step > 1 ? 1 : 0) | (step < -1 ? 1 : 0) | (ca == CodeMap::kNoCode ? 1 : 0);
     const float noise = 0.5F * (noise_a[i] + noise_b[i]);
 
     // Even border: some bit but the last; its difference is the weakest at both pixels.
-    const int even = 2 * std::max(ha, hb);
-    const float even_a = weakest_a[i];
-    const float even_b = weakest_b[i];
+    const int even = 2 * greater(ha, hb);
+    const int even_a = weakest_a[i];
+    const int even_sum = even_a + weakest_b[i];
     const int even_label = border_label(even);
-    const bool has_even = step != 0 && label_a[i] == even_label && label_b[i] == even_label && even_a + even_b > 0;
+    const int has_even = (step != 0 ? 1 : 0) & (label_a[i] == even_label ? 1 : 0) & (label_b[i] == even_label ? 1 : 0) &
+                         (even_sum > 0 ? 1 : 0);
     // Odd border: the last bit. Where h steps too, the codes' parity says on which side of the even border it lies.
-    const bool has_odd = ((ca ^ ha ^ cb ^ hb) & 1) != 0;
-    const bool at_a = step == 0 || (step > 0) == ((ca & 1) == 0);
-    const int odd = 2 * (at_a ? ha : hb) + 1;
-    const float odd_a = finest_a[i];
-    const float odd_b = finest_b[i];
+    const int has_odd = (ca ^ ha ^ cb ^ hb) & 1;
+    const int at_b = (step > 0 ? 1 : 0) & ca & 1;
+    const int at_b_falling = (step < 0 ? 1 : 0) & (ca ^ 1) & 1;
+    const int odd = 2 * (ha + (at_b | at_b_falling) * step) + 1;
+    const int odd_a = finest_a[i];
+    const int odd_sum = odd_a + finest_b[i];
 
     // The difference falls from its value at a to its negative at b: linear between, 0 at the border.
-    const float even_scale = 1.0F / std::max(even_a + even_b, 1.0F);
-    const float odd_scale = 1.0F / std::max(odd_a + odd_b, 1.0F);
-    const float fe = even_a * even_scale;
-    const float fo = odd_a * odd_scale;
-    const float ve = noise * even_scale * even_scale * (fe * fe + (1 - fe) * (1 - fe));
-    const float vo = noise * odd_scale * odd_scale * (fo * fo + (1 - fo) * (1 - fo));
-    const bool even_first = has_even && (!has_odd || fe <= fo);
-    const bool even_last = has_even && (!has_odd || fe > fo);
-    const bool none = !has_even && !has_odd;
-    out_place_a[i] = even_first ? fe : fo;
-    out_number_a[i] = static_cast<float>(even_first ? even : odd);
-    out_variance_a[i] = lost ? GapRow::kLost : none ? GapRow::kNone : even_first ? ve : vo;
-    out_place_b[i] = even_last ? fe : fo;
-    out_number_b[i] = static_cast<float>(even_last ? even : odd);
-    out_variance_b[i] = lost ? GapRow::kLost : none ? GapRow::kNone : even_last ? ve : vo;
+    const float even_scale = 1.0F / static_cast<float>(greater(even_sum, 1));
+    const float odd_scale = 1.0F / static_cast<float>(greater(odd_sum, 1));
+    const float fe = static_cast<float>(even_a) * even_scale;
+    const float fo = static_cast<float>(odd_a) * odd_scale;
+    const int even_before = fe <= fo ? 1 : 0;
+    const int a_even = has_even & ((has_odd ^ 1) | even_before);
+    const int b_even = has_even & ((has_odd ^ 1) | (even_before ^ 1));
+    // Sums with weights 0 or 1 where a choice would be a branch.
+    const auto of_a = static_cast<float>(a_even);
+    const auto of_b = static_cast<float>(b_even);
+    const float fa = fo + of_a * (fe - fo);
+    const float fb = fo + of_b * (fe - fo);
+    const float scale_a = odd_scale + of_a * (even_scale - odd_scale);
+    const float scale_b = odd_scale + of_b * (even_scale - odd_scale);
+    const float none = static_cast<float>((has_even | has_odd) ^ 1) * GapRow::kNone;
+    const auto known = static_cast<float>(lost ^ 1);
+    out_place_a[i] = fa;
+    out_place_b[i] = fb;
+    out_number_a[i] = static_cast<float>(odd + a_even * (even - odd));
+    out_number_b[i] = static_cast<float>(odd + b_even * (even - odd));
+    out_variance_a[i] = known * (noise * scale_a * scale_a * (fa * fa + (1 - fa) * (1 - fa)) + none);
+    out_variance_b[i] = known * (noise * scale_b * scale_b * (fb * fb + (1 - fb) * (1 - fb)) + none);
   }
 }
 
@@ -148,6 +183,7 @@ template <class T>
                                               float* __restrict found_place, float* __restrict found_number,
                                               float* __restrict found_variance) {
   int open = 0;
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     const bool take = found_variance[i] == GapRow::kNone;
     const float here = take ? variance[i] : found_variance[i];
@@ -182,36 +218,44 @@ template <class T>
       break;
     }
   }
+  if (search.border != nullptr) {
+    for (int k : {1, 4}) {
+      for (int i = 0; i < count; ++i) {
+        side[k][i] = search.border[static_cast<int>(side[k][i])];
+      }
+    }
+  }
   const float stripe = search.stripe_px;
   const float origin = -search.offset_px - 0.5F;
+  const float excess = search.excess_variance;
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const float* __restrict place_before = side[0];
-  const float* __restrict number_before = side[1];
+  const float* __restrict border_before = side[1];
   const float* __restrict variance_before = side[2];
   const float* __restrict place_after = side[3];
-  const float* __restrict number_after = side[4];
+  const float* __restrict border_after = side[4];
   const float* __restrict variance_after = side[5];
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     const float vb = variance_before[i];
     const float va = variance_after[i];
     const float span = place_after[i] - place_before[i];
-    const float from = search.border == nullptr ? number_before[i] : search.border[static_cast<int>(number_before[i])];
-    const float to = search.border == nullptr ? number_after[i] : search.border[static_cast<int>(number_after[i])];
-    const float rise = to - from;
+    const float rise = border_after[i] - border_before[i];
     // Not between two borders: a side is missing, or the surface turns here and shows the same border twice.
-    const bool between =
-        vb > 0 && va > 0 && vb < GapRow::kNone && va < GapRow::kNone && number_before[i] != number_after[i];
-    const float t = -place_before[i] / std::max(span, 1e-3F);
-    const float slope = rise / std::max(span, 0.1F);
+    const int between = (vb > 0 ? 1 : 0) & (va > 0 ? 1 : 0) & (vb < GapRow::kNone ? 1 : 0) &
+                        (va < GapRow::kNone ? 1 : 0) & (rise != 0 ? 1 : 0);
+    const float t = -place_before[i] / greater(span, 1e-3F);
+    const float slope = rise / greater(span, 0.1F);
     const float weight_before = (1 - t) * (1 - t);
     const float weight_after = t * t;
-    const float spread = slope * slope * (weight_before * vb + weight_after * va) +
-                         search.excess_variance * (weight_before + weight_after);
-    const bool coded = code[i] != CodeMap::kNoCode;
+    const float spread =
+        slope * slope * (weight_before * vb + weight_after * va) + excess * (weight_before + weight_after);
     const float middle = static_cast<float>(code[i]) + 0.5F;
-    const float number = between ? from + t * rise : middle;
-    value[i] = coded ? number * stripe + origin : kNan;
-    variance[i] = coded ? (between ? spread : 1.0F / 12.0F) * stripe * stripe : kNan;
+    const float number = between != 0 ? border_before[i] + t * rise : middle;
+    const float scatter = between != 0 ? spread : 1.0F / 12.0F;
+    const float coded = code[i] != CodeMap::kNoCode ? 0.0F : kNan;
+    value[i] = number * stripe + origin + coded;
+    variance[i] = scatter * stripe * stripe + coded;
   }
 }
 
@@ -219,13 +263,13 @@ template <class T>
 
 RAYSTEER_CLONES void classify(const GraySums<std::uint8_t>& sums, const std::uint8_t* white, const std::uint8_t* black,
                               const GrayLimits& limits, std::uint16_t* code, std::uint8_t* mask, float* variance) {
-  classify_row(sums, white, black, limits, code, mask, variance);
+  classify_any(sums, white, black, limits, code, mask, variance);
 }
 
 RAYSTEER_CLONES void classify(const GraySums<std::uint16_t>& sums, const std::uint16_t* white,
                               const std::uint16_t* black, const GrayLimits& limits, std::uint16_t* code,
                               std::uint8_t* mask, float* variance) {
-  classify_row(sums, white, black, limits, code, mask, variance);
+  classify_any(sums, white, black, limits, code, mask, variance);
 }
 
 RAYSTEER_CLONES void find_borders(const EdgeSource<std::uint8_t>& a, const EdgeSource<std::uint8_t>& b, int count,

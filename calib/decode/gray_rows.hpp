@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "calib/decode/gray_sums.hpp"
 
@@ -12,12 +11,12 @@ namespace raysteer::calib::decode {
 struct GrayLimits {
   float difference_floor = 0;  ///< variance of p - q, DN^2: floor + slope * (p + q)
   float difference_slope = 0;
-  float min_sigma2 = 25;       ///< a difference counts from this many variances on ...
-  float min_difference2 = 0;   ///< ... and from this square, DN^2
-  float min_contrast = 0;      ///< white - black, DN
-  float saturation = 250;      ///< DN
-  bool finest_coarse = false;  ///< there are bits with wide stripes to be classified by direct and global light
-  int codes = 0;               ///< number of stripes on the panel
+  float min_sigma2 = 25;      ///< a difference counts from this many variances on ...
+  float min_difference2 = 0;  ///< ... and from this square, DN^2
+  float min_contrast = 0;     ///< white - black, DN
+  float saturation = 250;     ///< DN
+  bool coarse = false;        ///< there are bits with wide stripes, to be classified by direct and global light
+  int codes = 0;              ///< number of stripes on the panel
   int width = 0;
 };
 
@@ -48,7 +47,7 @@ struct GapRow {
   /// Of the place, px^2. kNone: no border here. kLost: a pixel is not decoded, or the codes lie too far apart.
   float* variance_a;
   float* variance_b;
-  static constexpr float kNone = std::numeric_limits<float>::infinity();
+  static constexpr float kNone = 1e30F;  ///< absorbs what is added to it
   static constexpr float kLost = 0;
 };
 

@@ -7,80 +7,73 @@
 namespace raysteer::calib::decode {
 namespace {
 
+// Not std::min and std::max: references keep GCC 12 from vectorising.
 template <class T>
-[[gnu::always_inline]] inline void fold_code(int bit, const T* __restrict p, const T* __restrict q, int count,
-                                             const GraySums<T>& sums) {
+[[gnu::always_inline]] inline T lesser(T a, T b) {
+  return a < b ? a : b;
+}
+template <class T>
+[[gnu::always_inline]] inline T greater(T a, T b) {
+  return a < b ? b : a;
+}
+
+/// One pass over the row for all sums that a bit goes into. What it is for is known at compile time.
+template <class T, bool kFinest, bool kDirect, bool kCoarse>
+[[gnu::always_inline]] inline void fold_row(int bit, const T* __restrict p, const T* __restrict q, int count,
+                                            const GraySums<T>& sums) {
   constexpr int kBits = std::numeric_limits<T>::digits;
+  const auto code_bit = static_cast<T>(1U << static_cast<unsigned>(bit % kBits));
+  const auto here = static_cast<T>(label(bit));
   T* __restrict code = bit < kBits ? sums.code_low : sums.code_high;
-  const T value = static_cast<T>(1U << static_cast<unsigned>(bit % kBits));
-  for (int i = 0; i < count; ++i) {
-    code[i] = static_cast<T>(code[i] | (p[i] > q[i] ? value : T{0}));
-  }
-}
-
-template <class T>
-[[gnu::always_inline]] inline void fold_finest(const T* __restrict p, const T* __restrict q, int count,
-                                               const GraySums<T>& sums) {
   T* __restrict finest = sums.finest;
-  for (int i = 0; i < count; ++i) {
-    finest[i] = static_cast<T>(std::max(p[i], q[i]) - std::min(p[i], q[i]));
-  }
-}
-
-template <class T>
-[[gnu::always_inline]] inline void fold_weakest(int bit, const T* __restrict p, const T* __restrict q, int count,
-                                                const GraySums<T>& sums) {
   T* __restrict weakest = sums.weakest;
   T* __restrict weakest_bit = sums.weakest_bit;
   T* __restrict second = sums.second;
-  const T here = static_cast<T>(label(bit));
-  for (int i = 0; i < count; ++i) {
-    const T difference = static_cast<T>(std::max(p[i], q[i]) - std::min(p[i], q[i]));
-    const T before = weakest[i];
-    second[i] = std::min(second[i], std::max(before, difference));
-    weakest_bit[i] = difference < before ? here : weakest_bit[i];
-    weakest[i] = std::min(before, difference);
-  }
-}
-
-template <class T>
-[[gnu::always_inline]] inline void fold_direct(const T* __restrict p, const T* __restrict q, int count,
-                                               const GraySums<T>& sums) {
   T* __restrict direct = sums.direct;
   T* __restrict unlit = sums.unlit;
+  T* __restrict coarse_unlit = sums.coarse_unlit;
+  T* __restrict coarse_lit = sums.coarse_lit;
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
-    const T low = std::min(p[i], q[i]);
-    const T difference = static_cast<T>(std::max(p[i], q[i]) - low);
-    unlit[i] = difference > direct[i] ? low : unlit[i];
-    direct[i] = std::max(direct[i], difference);
-  }
-}
-
-template <class T>
-[[gnu::always_inline]] inline void fold_coarse(const T* __restrict p, const T* __restrict q, int count,
-                                               const GraySums<T>& sums) {
-  T* __restrict unlit = sums.coarse_unlit;
-  T* __restrict lit = sums.coarse_lit;
-  for (int i = 0; i < count; ++i) {
-    unlit[i] = std::max(unlit[i], std::min(p[i], q[i]));
-    lit[i] = std::min(lit[i], std::max(p[i], q[i]));
+    const T low = lesser(p[i], q[i]);
+    const T high = greater(p[i], q[i]);
+    const T difference = static_cast<T>(high - low);
+    code[i] = static_cast<T>(code[i] | (p[i] > q[i] ? code_bit : T{0}));
+    if constexpr (kFinest) {
+      finest[i] = difference;
+    } else {
+      const T before = weakest[i];
+      second[i] = lesser(second[i], greater(before, difference));
+      weakest_bit[i] = difference < before ? here : weakest_bit[i];
+      weakest[i] = lesser(before, difference);
+    }
+    if constexpr (kDirect) {
+      const T most = direct[i];
+      unlit[i] = difference > most ? low : unlit[i];
+      direct[i] = greater(most, difference);
+    }
+    if constexpr (kCoarse) {
+      coarse_unlit[i] = greater(coarse_unlit[i], low);
+      coarse_lit[i] = lesser(coarse_lit[i], high);
+    }
   }
 }
 
 template <class T>
 [[gnu::always_inline]] inline void fold_all(const BitRole& role, const T* p, const T* q, int count,
                                             const GraySums<T>& sums) {
-  fold_code(role.bit, p, q, count, sums);
   if (role.bit == 0) {
-    fold_finest(p, q, count, sums);
+    if (role.direct) {
+      fold_row<T, true, true, false>(role.bit, p, q, count, sums);
+    } else {
+      fold_row<T, true, false, false>(role.bit, p, q, count, sums);
+    }
+  } else if (role.direct) {
+    fold_row<T, false, true, false>(role.bit, p, q, count, sums);
+  } else if (role.coarse) {
+    fold_row<T, false, false, true>(role.bit, p, q, count, sums);
   } else {
-    fold_weakest(role.bit, p, q, count, sums);
-  }
-  if (role.direct) {
-    fold_direct(p, q, count, sums);
-  }
-  if (role.coarse) {
-    fold_coarse(p, q, count, sums);
+    fold_row<T, false, false, false>(role.bit, p, q, count, sums);
   }
 }
 

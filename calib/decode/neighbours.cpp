@@ -11,6 +11,7 @@ namespace {
 /// Codes further apart than `reach` set `apart`.
 [[gnu::always_inline]] inline void compare(const std::uint16_t* __restrict here, const std::uint16_t* __restrict there,
                                            std::uint16_t reach, int count, std::uint8_t* __restrict apart) {
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     const std::uint16_t higher = here[i] > there[i] ? here[i] : there[i];
     const std::uint16_t lower = here[i] > there[i] ? there[i] : here[i];
@@ -24,6 +25,7 @@ RAYSTEER_CLONES void count_agreeing(const std::array<const std::uint16_t*, 3>& x
                                     const std::array<const std::uint8_t*, 3>& mask, std::uint16_t reach_x,
                                     std::uint16_t reach_y, int count, std::uint8_t* __restrict agreeing,
                                     std::uint8_t* __restrict apart) {
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     agreeing[i] = 0;
   }
@@ -38,6 +40,7 @@ RAYSTEER_CLONES void count_agreeing(const std::array<const std::uint16_t*, 3>& x
       const int first = shift < 0 ? 1 : 0;
       const int inner = count - (shift != 0 ? 1 : 0);
       const std::uint8_t* __restrict valid = mask[row] + first + shift;
+      RAYSTEER_INDEPENDENT
       for (int i = 0; i < inner; ++i) {
         apart[i] = valid[i] != 0 ? 1 : 0;
       }
@@ -48,6 +51,7 @@ RAYSTEER_CLONES void count_agreeing(const std::array<const std::uint16_t*, 3>& x
         compare(y[1] + first, y[row] + first + shift, reach_y, inner, apart);
       }
       std::uint8_t* __restrict sum = agreeing + first;
+      RAYSTEER_INDEPENDENT
       for (int i = 0; i < inner; ++i) {
         sum[i] = static_cast<std::uint8_t>(sum[i] + (apart[i] ^ 1U));
       }

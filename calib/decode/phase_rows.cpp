@@ -15,6 +15,7 @@ template <class T>
 [[gnu::always_inline]] inline void add_row(const T* __restrict frame, int count, float sine_k, float cosine_k,
                                            float* __restrict sine, float* __restrict cosine, float* __restrict sum,
                                            float* __restrict squares, float* __restrict peak) {
+  RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     const float value = frame[i];
     sine[i] += value * sine_k;

@@ -10,3 +10,10 @@
 #else
 #define RAYSTEER_CLONES
 #endif
+
+/// Before a loop: its rows do not overlap, and none of its turns reads what another wrote.
+#if defined(__clang__)
+#define RAYSTEER_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define RAYSTEER_INDEPENDENT _Pragma("GCC ivdep")
+#endif
