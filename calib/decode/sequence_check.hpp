@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "hal/base/image.hpp"
@@ -22,19 +21,22 @@ namespace raysteer::calib::decode {
 struct SequenceReport {
   double lit = 0;             ///< share of the samples that the projector reaches
   double contrast = 0;        ///< median of (brightest - darkest) over the lit samples, levels
-  double saturated = 0;       ///< share of the lit samples that saturate in the brightest frame
   double brightest = 0;       ///< 99th percentile of the brightest frame, levels
-  double codes_coherent = 1;  ///< Gray: share of code steps between neighbouring pixels that are one stripe, worst axis
-  double codes_in_panel = 1;  ///< Gray: share of codes that lie on the panel, worst axis
-  double largest_shift_px = 0;  ///< movement between groups of frames, camera px
-  double phase_residual = 0;    ///< phase: RMS departure from a sinusoid over its amplitude, worst block
+  double saturated = 0;       ///< share of the lit samples that saturate in the brightest frame
+  double codes_coherent = 1;  ///< Gray: share of bits that read at the edges of coarser ones as they must; worst block
+  double codes_in_panel = 1;  ///< Gray: share of codes that lie on the panel, worst block
+  double phase_residual = 0;  ///< phase: median departure from a sinusoid over its amplitude, worst block
+  double largest_shift_px = 0;  ///< movement between groups of frames, camera px; 0 where there is no texture
   std::vector<Error> faults;    ///< worst first: kFrameCount, kFramesBlack, kFramesSaturated, kFramesDoubled,
-                                ///< kFramesOutOfOrder, kInverseSwapped, kSceneMoved
+                                ///< kFramesOutOfOrder, kInverseSwapped, kSceneMoved. Error::detail is a frame or -1.
+  std::vector<Error> warnings;  ///< of the same codes, for what can be lived with
+  bool good() const { return faults.empty(); }
 };
 
 class SequenceCheck {
  public:
-  /// `bits`: 8 or 16, what a saturated pixel is. Sizes in camera px.
+  /// Sizes in camera px. `bits`: 8 or 16, the depth of the pixels; files of 16 bits that hold 10, 12 or 14 bits are
+  /// recognised by their largest value.
   SequenceCheck(const PatternSequence& sequence, int width, int height, int bits);
 
   /// Takes what it needs of frame `index` of the sequence. The frame has the size given to the constructor.
@@ -46,7 +48,7 @@ class SequenceCheck {
   Status verdict() const;
 
  private:
-  struct Tile {
+  struct Corner {
     int x = 0;
     int y = 0;
   };
@@ -54,10 +56,9 @@ class SequenceCheck {
   void take(int index, ImageView<const Pixel> frame);
 
   PatternSequence sequence_;
-  int width_ = 0;
-  int height_ = 0;
-  double level_ = 1;                                 // grey levels of 255 per unit of the files
-  std::vector<Tile> tiles_;                          // top-left corners
+  int bits_ = 8;
+  int side_ = 0;                                     // of a tile, px
+  std::vector<Corner> tiles_;                        // top-left
   std::vector<std::vector<std::uint16_t>> samples_;  // [frame][tile, row, column]; empty: not added
 };
 

@@ -6,8 +6,13 @@ namespace raysteer::host::cli {
 
 const CommandTable& all_commands() {
   static constexpr std::array kCommands{
-      CommandRow{"scan", scan}, CommandRow{"report", report},         CommandRow{"explain", explain},
-      CommandRow{"help", help}, CommandRow{"completion", completion},
+      CommandRow{"scan", scan},
+      CommandRow{"report", report},
+      CommandRow{"explain", explain},
+      CommandRow{"help", help},
+      CommandRow{"completion", completion},
+      CommandRow{"session check", session_check},
+      CommandRow{"session info", session_info},
   };
   static constexpr std::array kGroups{
       GroupRow{"session", "Look at recorded sessions"},

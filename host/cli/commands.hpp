@@ -35,5 +35,7 @@ std::unique_ptr<Command> explain();
 std::unique_ptr<Command> help();
 std::unique_ptr<Command> report();
 std::unique_ptr<Command> scan();
+std::unique_ptr<Command> session_check();
+std::unique_ptr<Command> session_info();
 
 }  // namespace raysteer::host::cli

@@ -21,12 +21,13 @@ struct LookCheck {
 struct CheckReport {
   int frames = 0;  ///< read in all
   std::vector<LookCheck> looks;
-  std::vector<Error> faults;  ///< fatal ones, worst first; empty: the session is good
+  std::vector<Error> faults;    ///< each names camera and look; empty: the session is good
+  std::vector<Error> warnings;  ///< what can be lived with
   bool good() const { return faults.empty(); }
 };
 
-/// Called from one thread at a time with the number of frames done.
-using Progress = std::function<void(int done, int total)>;
+/// Called from one thread at a time with the number of frames done. False: stop; the report then lacks looks.
+using Progress = std::function<bool(int done, int total)>;
 
 /// Reads every frame (two threads) and judges each look of each camera. Frames that cannot be read are faults too.
 CheckReport check_session(const Session& session, const Progress& progress = {});

@@ -114,10 +114,13 @@ std::string read_name(TomlTable& table, std::string_view key, const std::string&
   return value;
 }
 
-PatternBlock read_block(TomlTable& table, int panel_width, int panel_height) {
+PatternBlock read_block(TomlTable& table, int panel_width, int panel_height, const Faults& faults) {
   constexpr std::array kKinds{PatternKind::kWhite, PatternKind::kBlack, PatternKind::kGray, PatternKind::kPhase};
   PatternBlock block;
   block.kind = kKinds.at(static_cast<std::size_t>(table.choice("kind", {"white", "black", "gray", "phase"})));
+  if (faults.any()) {
+    return block;  // without its kind, nobody knows which keys belong here
+  }
   if (block.kind == PatternKind::kGray) {
     block.axis = read_axis(table);
     block.bits = to_int(table.integer("bits", {1, 16}));
@@ -165,7 +168,7 @@ PatternSequence read_sequence(TomlTable& root, const std::string& file, Faults& 
       root.fault(RCode::kBadValue, "sequence", "has more than " + std::to_string(kMostBlocks) + " blocks");
       break;
     }
-    sequence.blocks.push_back(read_block(table, sequence.panel_width, sequence.panel_height));
+    sequence.blocks.push_back(read_block(table, sequence.panel_width, sequence.panel_height, faults));
   }
   if (sequence.blocks.empty()) {
     sequence.blocks.push_back({.kind = PatternKind::kWhite});

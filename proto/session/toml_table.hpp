@@ -24,6 +24,7 @@ class Faults {
  public:
   void add(Error error);
   Status status() const;
+  bool any() const { return unknown_ || other_; }
 
  private:
   std::optional<Error> unknown_;
