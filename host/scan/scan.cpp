@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -22,6 +23,9 @@ using session::Session;
 /// Points this close to the wall's plane count as the wall: walls bend by several millimetres (flatness is judged in
 /// patches for that reason).
 constexpr double kWallBandM = 0.015;
+
+/// A refit that leaves less than this explains why a pair's matches do not fit, px.
+constexpr double kRefitHelpsPx = 1;
 
 std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
 
@@ -160,7 +164,12 @@ Status reconstruct(Scan& scan, const calib::model::Rig& rig, bool refit_pose, co
 
   Result<calib::scene::Cloud> cloud = calib::scene::triangulate(*views, matches, rays);
   if (!cloud) {
-    return std::move(cloud).error();
+    // Not a few wrong matches but the whole pair, and a refit would put it right: say so.
+    const bool refit_helps = !scan.refitted && scan.moved() && scan.refit->held_out_after_px < kRefitHelpsPx &&
+                             std::isfinite(scan.depth_ratio);
+    return refit_helps ? fail(RCode::kPoseMoved,
+                              "by " + std::to_string(1e3 * scan.refit->moved_rad) + " mrad; " + cloud.error().note)
+                       : std::move(cloud).error();
   }
   scan.cloud = *std::move(cloud);
   scan.depth = depth_range(scan.cloud.points);

@@ -62,7 +62,8 @@ struct Scan {
 /// cameras), kCalibrationMismatch (a name is not in the calibration, a size differs; says which).
 Result<ScanDevices> scan_devices(const session::Session& session, const calib::model::Rig& rig);
 
-/// Errors: those of scan_devices(), decode_cameras(), and kTooFewMatches, kCancelled.
+/// Errors: those of scan_devices(), decode_cameras(); kTooFewMatches; kPoseMoved (the pair moved so far that nothing
+/// fits, and options.refit_pose would help); kCancelled.
 Result<Scan> scan(const session::Session& session, int look, const calib::model::Rig& rig, const ScanOptions& options,
                   const StartStage& start_stage);
 
