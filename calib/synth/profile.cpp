@@ -13,6 +13,8 @@ constexpr double kStep = 1.0 / kNodesPerPixel;
 /// Below this width a side of the footprint changes a mean by less than 1e-6 of its contrast, and dividing by it
 /// would amplify rounding.
 constexpr double kThin = 1e-3;
+/// Slopes below this, in light per panel pixel, are rounding and the blur's farthest tail.
+constexpr double kFlat = 1e-7;
 
 double gauss_integral(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
@@ -52,25 +54,29 @@ Profile::Profile(const std::vector<double>& pixels, double blur_px) {
     next.first = node.first + kStep * (node.value + next.value) / 2;
     next.second = node.second + kStep * node.first + kStep * kStep * (2 * node.value + next.value) / 6;
   }
+  flat_until_.resize(nodes_.size(), static_cast<int>(nodes_.size()) - 1);
+  for (std::size_t i = nodes_.size() - 1; i-- > 0;) {
+    flat_until_[i] = std::abs(nodes_[i].slope) < kFlat ? flat_until_[i + 1] : static_cast<int>(i);
+  }
 }
 
-const Profile::Node& Profile::find(double x, double& past) const {
+inline std::size_t Profile::find(double x, double& past) const {
   const double place = std::clamp((x - start_) * kNodesPerPixel, 0.0, static_cast<double>(nodes_.size() - 1));
-  const auto index = static_cast<std::size_t>(place);
-  past = x - start_ - static_cast<double>(index) * kStep;
-  return nodes_[index];
+  const auto index = static_cast<int>(place);
+  past = x - start_ - index * kStep;
+  return static_cast<std::size_t>(index);
 }
 
-double Profile::first(double x) const {
+inline double Profile::first(double x) const {
   double past = 0;
-  const Node& node = find(x, past);
+  const Node& node = nodes_[find(x, past)];
   return node.first + past * (node.value + past * node.slope / 2);
 }
 
-double Profile::second(double x) const {
+inline double Profile::second(double x) const {
   double past = 0;
-  const Node& node = find(x, past);
-  return node.second + past * (node.first + past * (node.value / 2 + past * node.slope / 6));
+  const Node& node = nodes_[find(x, past)];
+  return node.second + past * (node.first + past * (node.value / 2 + past * (node.slope * (1.0 / 6))));
 }
 
 double Profile::mean(double centre, double a, double b) const {
@@ -81,13 +87,18 @@ double Profile::mean(double centre, double a, double b) const {
   }
   if (a < kThin) {
     double past = 0;
-    const Node& node = find(centre, past);
+    const Node& node = nodes_[find(centre, past)];
     return node.value + past * node.slope;
+  }
+  const double far = (a + b) / 2;
+  double past = 0;
+  const std::size_t left = find(centre - far, past);
+  if (static_cast<int>((centre + far - start_) * kNodesPerPixel) < flat_until_[left]) {
+    return nodes_[left].value;  // inside a stripe: most pixels of the coarse patterns
   }
   if (b < kThin) {
     return (first(centre + a / 2) - first(centre - a / 2)) / a;
   }
-  const double far = (a + b) / 2;
   const double near = (a - b) / 2;
   return (second(centre + far) - second(centre + near) - second(centre - near) + second(centre - far)) / (a * b);
 }

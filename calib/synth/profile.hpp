@@ -1,6 +1,7 @@
 // value: a pattern along its axis as the projector's lens blurs it, ready to be averaged over any footprint.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace raysteer::calib::synth {
@@ -22,9 +23,10 @@ class Profile {
   double second(double x) const;
   double first(double x) const;
   /// The node at or left of x, and how far x is past it; ends continue as straight lines.
-  const Node& find(double x, double& past) const;
+  std::size_t find(double x, double& past) const;
 
   std::vector<Node> nodes_;
+  std::vector<int> flat_until_;  ///< index of the last node that has this node's value without interruption
   double start_ = 0;
 };
 

@@ -1,8 +1,8 @@
 #include "calib/synth/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace raysteer::calib::synth {
@@ -125,6 +125,19 @@ bool blocked(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vecto
     }
   }
   return false;
+}
+
+double distance_to(const Scene& scene, const Eigen::Vector3d& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Plate& each : scene.plates) {
+    const Eigen::Vector3d local = each.T_rig_plate.inverse() * p;
+    const Eigen::Vector3d on_plate(std::clamp(local.x(), each.u0, each.u1), std::clamp(local.y(), each.v0, each.v1), 0);
+    nearest = std::min(nearest, (local - on_plate).norm());
+  }
+  for (const Ball& each : scene.balls) {
+    nearest = std::min(nearest, std::abs((p - each.centre).norm() - each.radius));
+  }
+  return nearest;
 }
 
 }  // namespace raysteer::calib::synth

@@ -57,4 +57,7 @@ std::optional<Hit> first_hit(const Scene& scene, const Eigen::Vector3d& origin, 
 /// Does anything stand between the two points?
 bool blocked(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
+/// Distance from a point to the nearest surface, metres; infinite for an empty scene.
+double distance_to(const Scene& scene, const Eigen::Vector3d& p);
+
 }  // namespace raysteer::calib::synth

@@ -13,6 +13,7 @@ const CommandTable& all_commands() {
       CommandRow{"completion", completion},
       CommandRow{"session check", session_check},
       CommandRow{"session info", session_info},
+      CommandRow{"session render", session_render},
   };
   static constexpr std::array kGroups{
       GroupRow{"session", "Look at recorded sessions"},

@@ -37,5 +37,6 @@ std::unique_ptr<Command> report();
 std::unique_ptr<Command> scan();
 std::unique_ptr<Command> session_check();
 std::unique_ptr<Command> session_info();
+std::unique_ptr<Command> session_render();
 
 }  // namespace raysteer::host::cli

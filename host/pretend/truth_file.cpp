@@ -1,0 +1,205 @@
+#include "host/pretend/truth_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "host/exchange/write_file.hpp"
+
+namespace raysteer::host::pretend {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using calib::model::Camera;
+using calib::model::Device;
+using calib::model::DeviceKind;
+using calib::model::Pose;
+using calib::model::Rig;
+
+constexpr int kFormat = 1;
+
+Json list(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+Json json_of(const Pose& pose) {
+  return {{"rotation_wxyz", {pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z()}}, {"translation_m", list(pose.t)}};
+}
+
+// These throw what nlohmann throws; truth_from_json() catches it.
+
+Eigen::Vector3d vector_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+Pose pose_of(const Json& json) {
+  const Json& q = json.at("rotation_wxyz");
+  Pose pose;
+  pose.q =
+      Eigen::Quaterniond(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>())
+          .normalized();
+  pose.t = vector_of(json.at("translation_m"));
+  return pose;
+}
+
+Device device_of(const Json& json) {
+  Device device;
+  device.name = json.at("name").get<std::string>();
+  device.kind = json.at("kind") == "projector" ? DeviceKind::kProjector : DeviceKind::kCamera;
+  Camera& camera = device.camera;
+  camera.width = json.at("width").get<int>();
+  camera.height = json.at("height").get<int>();
+  camera.fx = json.at("fx").get<double>();
+  camera.fy = json.at("fy").get<double>();
+  camera.cx = json.at("cx").get<double>();
+  camera.cy = json.at("cy").get<double>();
+  camera.lens = calib::model::lens_from_string(json.at("lens").get<std::string>()).value_or(camera.lens);
+  camera.k = json.at("distortion").get<std::array<double, 8>>();
+  device.T_device_rig = pose_of(json.at("T_device_rig"));
+  return device;
+}
+
+/// Rotation vector of `solved` after `truth`: the left increment of Rig's covariance.
+Eigen::Vector3d turn(const Pose& solved, const Pose& truth) {
+  const Eigen::AngleAxisd turned(solved.q * truth.q.conjugate());
+  return turned.angle() * turned.axis();
+}
+
+}  // namespace
+
+std::string to_json(const TruthFile& truth) {
+  Json json{{"format", kFormat}, {"seed", truth.seed}};
+  for (const Device& device : truth.rig.devices) {
+    const Camera& camera = device.camera;
+    json["devices"].push_back({{"name", device.name},
+                               {"kind", device.kind == DeviceKind::kProjector ? "projector" : "camera"},
+                               {"width", camera.width},
+                               {"height", camera.height},
+                               {"fx", camera.fx},
+                               {"fy", camera.fy},
+                               {"cx", camera.cx},
+                               {"cy", camera.cy},
+                               {"lens", to_string(camera.lens)},
+                               {"distortion", camera.k},
+                               {"T_device_rig", json_of(device.T_device_rig)}});
+  }
+  json["plates"] = Json::array();
+  for (const calib::synth::Plate& plate : truth.scene.plates) {
+    json["plates"].push_back(
+        {{"u_m", {plate.u0, plate.u1}}, {"v_m", {plate.v0, plate.v1}}, {"T_rig_plate", json_of(plate.T_rig_plate)}});
+  }
+  json["balls"] = Json::array();
+  for (const calib::synth::Ball& ball : truth.scene.balls) {
+    json["balls"].push_back({{"centre_m", list(ball.centre)}, {"radius_m", ball.radius}});
+  }
+  return json.dump(2) + "\n";
+}
+
+Result<TruthFile> truth_from_json(std::string_view text) {
+  try {
+    const Json json = Json::parse(text);
+    TruthFile truth;
+    if (json.at("format") != kFormat) {
+      return fail(RCode::kBadValue, "truth.json: format must be 1");
+    }
+    truth.seed = json.at("seed").get<std::uint64_t>();
+    for (const Json& device : json.at("devices")) {
+      truth.rig.devices.push_back(device_of(device));
+    }
+    for (const Json& each : json.at("plates")) {
+      calib::synth::Plate plate;
+      plate.T_rig_plate = pose_of(each.at("T_rig_plate"));
+      plate.u0 = each.at("u_m").at(0).get<double>();
+      plate.u1 = each.at("u_m").at(1).get<double>();
+      plate.v0 = each.at("v_m").at(0).get<double>();
+      plate.v1 = each.at("v_m").at(1).get<double>();
+      truth.scene.plates.push_back(std::move(plate));
+    }
+    for (const Json& ball : json.at("balls")) {
+      truth.scene.balls.push_back({vector_of(ball.at("centre_m")), ball.at("radius_m").get<double>()});
+    }
+    return truth;
+  } catch (const std::exception& exception) {
+    return fail(RCode::kBadValue, std::string("truth.json: ") + exception.what());
+  }
+}
+
+Result<std::optional<TruthFile>> truth_beside(const std::filesystem::path& session_file) {
+  const std::filesystem::path path = session_file.parent_path() / kTruthFile;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return std::optional<TruthFile>();
+  }
+  const auto text = exchange::read_file(path);
+  if (!text) {
+    return text.error();
+  }
+  auto truth = truth_from_json(*text);
+  if (!truth) {
+    return truth.error();
+  }
+  return std::optional(*std::move(truth));
+}
+
+SurfaceError surface_error(const calib::synth::Scene& scene, std::span<const Eigen::Vector3d> points) {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points) {
+    distances.push_back(calib::synth::distance_to(scene, p));
+    sum += distances.back() * distances.back();
+  }
+  if (distances.empty()) {
+    return {};
+  }
+  const auto p95 = distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size() - 1));
+  std::nth_element(distances.begin(), p95, distances.end());
+  return {std::sqrt(sum / static_cast<double>(distances.size())), *p95};
+}
+
+std::optional<RigError> rig_error(const Rig& solved, const Rig& truth) {
+  RigError error;
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(solved.devices.empty() ? 0 : solved.offset(solved.devices.size()));
+  for (std::size_t i = 0; i < solved.devices.size(); ++i) {
+    const Device& device = solved.devices[i];
+    const Device* found = truth.find(device.name);
+    if (found == nullptr || coefficients(found->camera.lens) > coefficients(device.camera.lens)) {
+      return std::nullopt;
+    }
+    Device real = *found;
+    real.camera.lens = device.camera.lens;  // coefficients that the truth lacks are 0
+    Eigen::VectorXd difference = parameters(device, i > 0) - parameters(real, i > 0);
+    if (i > 0) {
+      difference.segment<3>(difference.size() - 6) = turn(device.T_device_rig, real.T_device_rig);
+    }
+    delta.segment(solved.offset(i), solved.count(i)) = difference;
+    error.focal =
+        std::max({error.focal, std::abs(difference[0] / real.camera.fx), std::abs(difference[1] / real.camera.fy)});
+    error.centre_px = std::max({error.centre_px, std::abs(difference[2]), std::abs(difference[3])});
+    if (i == 1) {
+      error.baseline_m = std::abs(device.T_device_rig.t.norm() - real.T_device_rig.t.norm());
+    }
+  }
+  if (delta.size() == 0) {
+    return std::nullopt;
+  }
+  // Parameters held fixed have no variance and do not count; the others are scaled, since units differ widely.
+  if (solved.covariance.rows() == delta.size()) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < delta.size(); ++i) {
+      if (solved.covariance(i, i) > 0) {
+        free.push_back(i);
+      }
+    }
+    const Eigen::MatrixXd covariance = solved.covariance(free, free);
+    const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+    const Eigen::VectorXd scaled = scale.asDiagonal() * Eigen::VectorXd(delta(free));
+    error.chi_square = scaled.dot(correlation.ldlt().solve(scaled));
+    error.degrees_of_freedom = static_cast<int>(free.size());
+  }
+  return error;
+}
+
+}  // namespace raysteer::host::pretend
