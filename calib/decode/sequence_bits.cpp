@@ -1,6 +1,7 @@
 #include "calib/decode/sequence_bits.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace raysteer::calib::decode {
@@ -83,9 +84,12 @@ std::optional<std::vector<int>> find_inverted(const BitTable& table, int& told) 
 }
 
 // A coarse bit that changes more often than a finer one does not show what it should. One edge more is fair: which
-// edges are in view is chance; and the finest bits may be lost in blur, so that only the coarser half is judged.
+// edges are in view is chance, and one that runs along a row of tiles meets all of them or none; and the finest bits
+// may be lost in blur, so that only the coarser half is judged.
 std::optional<int> too_busy(const BitTable& table) {
-  const double one_edge = 0.003 * table.neighbours;
+  // Each sample has two neighbours, and a row of tiles is about as long as the root of all samples.
+  const double row_of_tiles = 1.5 * std::sqrt(table.neighbours / 2.0);
+  const double one_edge = std::max(0.003 * table.neighbours, row_of_tiles);
   for (int k = table.bits - 1; k > std::max(table.bits / 2, table.finest + 1); --k) {
     for (int j = table.finest + 1; j < k; ++j) {
       if (table.changes[static_cast<std::size_t>(k)] > 1.5 * table.changes[static_cast<std::size_t>(j)] + one_edge) {
