@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "calib/decode/sequence_check.hpp"
 #include "hal/base/pattern.hpp"
 
 namespace raysteer::host::scan {
@@ -33,6 +34,7 @@ Result<DecodedLook> decode(const Session& session, int camera, int look, const c
   if (!decoder) {
     return with_context(std::move(decoder).error(), who);
   }
+  calib::decode::SequenceCheck check(sequence, session.width(camera), session.height(camera), session.bits(camera));
   DecodedLook decoded;
   Image<Pixel> frame;
   const std::vector<Pattern> patterns = sequence.patterns();
@@ -42,12 +44,17 @@ Result<DecodedLook> decode(const Session& session, int camera, int look, const c
       return fail(RCode::kCancelled);
     }
     RAYSTEER_TRY(session.load({camera, look, index}, frame));
+    check.add(index, std::as_const(frame).view());
     if (Status pushed = decoder->push(std::as_const(frame).view()); !pushed) {
       return with_context(std::move(pushed).error(), session.describe({camera, look, index}));
     }
     if (patterns[static_cast<std::size_t>(index)].block.kind == PatternKind::kWhite) {
       keep_white(frame, session.bits(camera), decoded.white);
     }
+  }
+  // Frames that do not show the sequence decode to nonsense without an error: what is wrong with them comes first.
+  if (Status verdict = check.verdict(); !verdict) {
+    return with_context(std::move(verdict).error(), who);
   }
   Result<calib::decode::CodeMap> codes = decoder->finish();
   if (!codes) {
