@@ -41,7 +41,9 @@ target_compile_options(raysteer_options INTERFACE
   # g++ 12 raises these falsely for "text" + std::string (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>
+  # clang tells of every `omp simd` loop that a sanitizer keeps it from vectorising.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
 if(RAYSTEER_SANITIZE)
   target_compile_options(raysteer_options INTERFACE -fsanitize=${RAYSTEER_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=undefined)
