@@ -239,7 +239,9 @@ Result<Detection> place_corners(const TargetSpec& target, const cv::Mat& frame, 
   return detection;
 }
 
-Status check_spec(const TargetSpec& target) {
+}  // namespace
+
+Status check_charuco(const TargetSpec& target) {
   if (!dictionary_number(target.dictionary)) {
     return fail(RCode::kBadValue, "dictionary '" + target.dictionary + "' is not known; use one like 5X5_1000");
   }
@@ -250,13 +252,15 @@ Status check_spec(const TargetSpec& target) {
   return ok();
 }
 
-}  // namespace
+cv::Ptr<cv::aruco::Dictionary> dictionary_of(const TargetSpec& target) {
+  return cv::aruco::getPredefinedDictionary(*dictionary_number(target.dictionary));
+}
 
 std::vector<Result<Detection>> detect_charuco(const TargetSpec& target, std::span<const cv::Mat> frames) {
-  if (const Status status = check_spec(target); !status) {
+  if (const Status status = check_charuco(target); !status) {
     return std::vector<Result<Detection>>(frames.size(), Result<Detection>(status.error()));
   }
-  const auto dictionary = cv::aruco::getPredefinedDictionary(*dictionary_number(target.dictionary));
+  const auto dictionary = dictionary_of(target);
   std::vector<CharucoLayout> layouts{target.layout};
   if (target.layout == CharucoLayout::kAuto) {
     layouts = {CharucoLayout::kCurrent};

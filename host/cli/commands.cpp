@@ -5,16 +5,19 @@
 namespace raysteer::host::cli {
 
 const CommandTable& all_commands() {
+  // clang-format off: one row a line
   static constexpr std::array kCommands{
-      CommandRow{"scan", scan},
-      CommandRow{"report", report},
-      CommandRow{"explain", explain},
-      CommandRow{"help", help},
-      CommandRow{"completion", completion},
       CommandRow{"session check", session_check},
       CommandRow{"session info", session_info},
       CommandRow{"session render", session_render},
+      CommandRow{"scan", scan},
+      CommandRow{"report", report},
+      CommandRow{"target print", target_print},
+      CommandRow{"explain", explain},
+      CommandRow{"help", help},
+      CommandRow{"completion", completion},
   };
+  // clang-format on
   static constexpr std::array kGroups{
       GroupRow{"session", "Look at recorded sessions"},
       GroupRow{"calibrate", "Solve cameras and projector from a session"},

@@ -38,5 +38,6 @@ std::unique_ptr<Command> scan();
 std::unique_ptr<Command> session_check();
 std::unique_ptr<Command> session_info();
 std::unique_ptr<Command> session_render();
+std::unique_ptr<Command> target_print();
 
 }  // namespace raysteer::host::cli

@@ -93,9 +93,9 @@ void color_bar(Svg& svg, const Scale& scale, std::string_view unit, double plot_
   const double step = nice_step(scale.high - scale.low, 5);
   for (double value = std::ceil(scale.low / step) * step; value <= scale.high * (1 + 1e-9) + 1e-15; value += step) {
     const double at = kTop + plot_h * (scale.high - value) / (scale.high - scale.low);
-    svg.text(x + 15, at + 3.5, brief(std::abs(value) < step * 1e-6 ? 0 : value));
+    svg.text(x + 15, at + 3.5, tick_label(value, step));
   }
-  svg.text(x + 11, kTop + plot_h + 16, unit, Anchor::kMiddle, "unit");
+  svg.text(x, kTop + plot_h + 16, unit, Anchor::kStart, "unit");
 }
 
 }  // namespace
@@ -244,11 +244,16 @@ std::string view_bars(const std::vector<ViewRow>& views, const std::vector<Devic
   for (double value = 0; value <= top * (1 + 1e-9); value += step) {
     const double y = kTop + kHeight * (1 - value / top);
     svg.line(kLeft, y, kFull, y, "grid");
-    svg.text(kLeft - 7, y + 3.5, brief(value), Anchor::kEnd);
+    svg.text(kLeft - 7, y + 3.5, tick_label(value, step), Anchor::kEnd);
   }
   const double room = (kFull - kLeft) / static_cast<double>(views.size());
   const double bar = room * 0.8 / static_cast<double>(std::max<std::size_t>(1, devices.size()));
-  const std::size_t label_every = static_cast<std::size_t>(30 / room) + 1;
+  // Names that would run into each other are shown at every second, third, ... view.
+  std::size_t longest = 1;
+  for (const ViewRow& view : views) {
+    longest = std::max(longest, std::min<std::size_t>(view.name.size(), 16));
+  }
+  const auto label_every = static_cast<std::size_t>((6.5 * static_cast<double>(longest) + 6) / room) + 1;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const double x = kLeft + (static_cast<double>(i) + 0.1) * room;
     for (std::size_t d = 0; d < views[i].rms_px.size() && d < devices.size(); ++d) {
@@ -262,9 +267,8 @@ std::string view_bars(const std::vector<ViewRow>& views, const std::vector<Devic
     }
     if (i % label_every == 0) {
       std::string name = views[i].name;
-      const auto most_letters = static_cast<std::size_t>(std::max(3.0, room * static_cast<double>(label_every) / 6.0));
-      if (name.size() > most_letters) {
-        name = "…" + name.substr(name.size() - most_letters + 1);
+      if (name.size() > longest) {
+        name = "…" + name.substr(name.size() - longest + 1);
       }
       svg.text(x + room * 0.4, kTop + kHeight + 15, name, Anchor::kMiddle);
     }
@@ -298,7 +302,7 @@ std::string histogram(const Histogram& histogram, std::string_view unit, const C
   for (double value = std::ceil(histogram.low / step) * step; value <= histogram.high + 1e-9 * range; value += step) {
     const double x = kLeft + plot_w * (value - histogram.low) / range;
     svg.line(x, kTop + kHeight, x, kTop + kHeight + 4, "axis");
-    svg.text(x, kTop + kHeight + 16, brief(std::abs(value) < step * 1e-6 ? 0 : value), Anchor::kMiddle);
+    svg.text(x, kTop + kHeight + 16, tick_label(value, step), Anchor::kMiddle);
   }
   svg.line(kLeft, kTop + kHeight, kLeft + plot_w, kTop + kHeight, "axis");
   if (histogram.low < 0 && histogram.high > 0) {

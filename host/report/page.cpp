@@ -270,7 +270,9 @@ std::string picture_of(const ScanResult& result, const std::filesystem::path& fo
 
 std::string body(const ScanResult& result, const std::filesystem::path& folder) {
   std::string text = scan_numbers(result).take() + pose_sentence(result);
-  text += "<h2>Surface</h2>\n" + picture_of(result, folder);
+  if (const std::string picture = picture_of(result, folder); !picture.empty()) {
+    text += "<h2>Surface</h2>\n" + picture;
+  }
   std::string figures;
   if (!result.epipolar_cells_px.empty()) {
     figures += heat_map(result.epipolar_cells_px, 32 * result.epipolar_cells_px.columns,

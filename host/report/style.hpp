@@ -19,8 +19,8 @@ h2 { font-size: 1.15rem; margin: 2.4rem 0 0.8rem; padding-bottom: 0.3rem; border
 h2 small { font-weight: 400; color: var(--soft); }
 h3 { font-size: 0.95rem; margin: 0.4rem 0 0.3rem; }
 header h3 { margin: 0.7rem 0 0.1rem; } header ul { margin: 0; padding-left: 1.2rem; }
-.numbers { display: flex; flex-wrap: wrap; gap: 0.8rem; margin: 0; padding: 0; list-style: none; }
-.numbers li { flex: 1 1 8.5rem; border: 1px solid var(--line); border-radius: 6px; padding: 0.55rem 0.8rem; }
+.numbers { display: grid; grid-template-columns: repeat(auto-fill, minmax(9.5rem, 1fr)); gap: 0.8rem; margin: 0; padding: 0; list-style: none; }
+.numbers li { border: 1px solid var(--line); border-radius: 6px; padding: 0.55rem 0.8rem; }
 .numbers b { display: block; font-size: 1.3rem; font-weight: 600; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .numbers span { color: var(--soft); font-size: 0.82rem; line-height: 1.3; display: block; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(21rem, 1fr)); gap: 1.4rem 2rem; }

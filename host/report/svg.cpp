@@ -71,6 +71,16 @@ double nice_step(double range, int most) {
   return 10 * power;
 }
 
+std::string tick_label(double value, double step) {
+  if (std::abs(value) < step * 1e-6) {
+    return "0";
+  }
+  if (step >= 1e6 || step < 1e-5) {
+    return fmt::format("{:.1e}", value);
+  }
+  return fmt::format("{:.{}f}", value, step >= 1 ? 0 : static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+}
+
 std::string brief(double value) {
   if (!std::isfinite(value)) {
     return "–";

@@ -33,6 +33,9 @@ class Svg {
 /// A step of 1, 2 or 5 times a power of ten that cuts `range` in at most `most` pieces.
 double nice_step(double range, int most);
 
+/// A tick's label, with the decimals that its step needs: "0.05", "0.10".
+std::string tick_label(double value, double step);
+
 /// Three significant digits without noise: "0.162", "12.4", "1430", "0".
 std::string brief(double value);
 
