@@ -159,6 +159,7 @@ TEST(Manifest, names_the_line_and_the_nearest_key) {
 TEST(Manifest, every_bad_value_has_its_own_message) {
   expect_fault("format = 1\nname = ", RCode::kTomlSyntax, "demo.toml:2");
   expect_fault("format = 1\n[[@camera]]\n", RCode::kTomlSyntax, "demo.toml:2");
+  expect_fault("format = 1\n\u00e9 = 2\n", RCode::kTomlSyntax, "demo.toml:2");
   expect_fault(replaced(kWhole, "format = 1", "format = 2"), RCode::kFormatVersion, "this program knows 1");
   expect_fault(replaced(kWhole, "format = 1\n", ""), RCode::kMissingKey, "'format'");
   expect_fault(replaced(kWhole, "name = \"left\"\n", ""), RCode::kMissingKey, "demo.toml:10: 'name' of [[camera]] 1");
