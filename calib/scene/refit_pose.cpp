@@ -14,7 +14,10 @@ using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 constexpr std::size_t kFewestMatches = 200;
+constexpr std::size_t kFirstMatches = 20000;
 constexpr double kClusterPx = 64;
+/// No scan is better than this; keeps weights finite where matches are exact.
+constexpr double kLeastSigmaPx = 0.01;
 /// 99.9999 % of chi-square with 5 degrees of freedom: one false alarm in a million healthy scans.
 constexpr double kChiSquareBound = 35.9;
 /// A smaller change of the disagreement than this is not worth a warning, however sure we are of it: lens models
@@ -84,6 +87,32 @@ std::uint32_t cluster_of(const Match& match) {
 
 double spread(const TwoViews& views, std::span<const RayPair> rays) {
   return robust_sigma(epipolar_disagreement(views, rays));
+}
+
+/// Moves the pose until a step is smaller than `least_step` (rad).
+Status settle(TwoViews& views, std::span<const RayPair> rays, double least_step) {
+  constexpr int kMostSteps = 30;
+  for (int step_number = 0; step_number < kMostSteps; ++step_number) {
+    const double sigma = std::max(spread(views, rays), kLeastSigmaPx);
+    const Epipolar epipolar(views);
+    Matrix5 normal = Matrix5::Zero();
+    Vector5 right_side = Vector5::Zero();
+    for (const RayPair& ray : rays) {
+      const Row row = epipolar.row(ray);
+      const double weight = weight_of(row.d, sigma);
+      normal.noalias() += weight * row.by_pose * row.by_pose.transpose();
+      right_side -= weight * row.d * row.by_pose;
+    }
+    const Vector5 step = normal.ldlt().solve(right_side);
+    if (!step.allFinite() || step.norm() > 1) {
+      return fail(RCode::kSolverDiverged, "the refit of the relative pose ran away");
+    }
+    views.T_right_left = moved_by(views.T_right_left, step);
+    if (step.norm() < least_step) {
+      break;
+    }
+  }
+  return ok();
 }
 
 /// What the calibration's uncertainty alone would make of a refit: the five pose numbers as a linear function of
@@ -165,34 +194,20 @@ Result<PoseRefit> refit_pose(const model::Rig& rig, std::size_t left, std::size_
   }
 
   TwoViews views = *calibrated;
-  Matrix5 normal = Matrix5::Zero();
-  bool settled = false;
-  for (int iteration = 0; iteration < 30 && !settled; ++iteration) {
-    const double sigma = std::max(spread(views, fitted_rays), 0.01);
-    const Epipolar epipolar(views);
-    normal.setZero();
-    Vector5 right_side = Vector5::Zero();
-    for (const RayPair& ray : fitted_rays) {
-      const Row row = epipolar.row(ray);
-      const double weight = weight_of(row.d, sigma);
-      normal.noalias() += weight * row.by_pose * row.by_pose.transpose();
-      right_side -= weight * row.d * row.by_pose;
-    }
-    const Vector5 step = normal.ldlt().solve(right_side);
-    if (!step.allFinite() || step.norm() > 1) {
-      return fail(RCode::kSolverDiverged, "the refit of the relative pose ran away");
-    }
-    views.T_right_left = moved_by(views.T_right_left, step);
-    settled = step.norm() < 1e-8;
+  std::vector<RayPair> few;  // most of the way is found with a part of the matches
+  for (std::size_t k = 0; k < fitted_rays.size(); k += 1 + fitted_rays.size() / kFirstMatches) {
+    few.push_back(fitted_rays[k]);
   }
+  RAYSTEER_TRY(settle(views, few, 1e-5));
+  RAYSTEER_TRY(settle(views, fitted_rays, 1e-7));
 
   // Sandwich covariance over clusters of the image.
-  const double sigma = std::max(spread(views, fitted_rays), 0.01);
+  const double sigma = std::max(spread(views, fitted_rays), kLeastSigmaPx);
   const Epipolar epipolar(views);
   std::map<std::uint32_t, Vector5> scores;
   double effect = 0;
   const std::vector<double> before = epipolar_disagreement(*calibrated, fitted_rays);
-  normal.setZero();
+  Matrix5 normal = Matrix5::Zero();
   for (std::size_t k = 0; k < fitted.size(); ++k) {
     const Row row = epipolar.row(fitted_rays[k]);
     const double weight = weight_of(row.d, sigma);
