@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "host/exchange/calibration_file.hpp"
 #include "host/exchange/ply.hpp"
 #include "host/exchange/write_file.hpp"
+#include "host/pretend/truth_file.hpp"
 #include "host/report/picture.hpp"
 #include "host/session/session.hpp"
 
@@ -42,6 +44,25 @@ std::vector<exchange::PlyPoint> ply_points(const scan::Scan& scan) {
     points.push_back(out);
   }
   return points;
+}
+
+/// The cloud against the surfaces it was rendered from; nothing for a session that was not rendered.
+Result<std::optional<pretend::SurfaceError>> truth_error(const scan::Scan& scan, const calib::model::Rig& rig,
+                                                         const std::string& session_file) {
+  const Result<std::optional<pretend::TruthFile>> truth = pretend::truth_beside(session_file);
+  if (!truth) {
+    return truth.error();
+  }
+  if (!*truth) {
+    return std::optional<pretend::SurfaceError>();
+  }
+  const calib::model::Pose T_rig_left = rig.devices[scan.devices.left].T_device_rig.inverse();
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(scan.cloud.points.size());
+  for (const calib::scene::CloudPoint& point : scan.cloud.points) {
+    points.push_back(T_rig_left * point.p);
+  }
+  return std::optional(pretend::surface_error((*truth)->scene, points));
 }
 
 std::string picture(const scan::Scan& scan, const PatternSequence& sequence) {
@@ -122,6 +143,14 @@ class Scan : public Command {
     const ScanNames names{session_, calibration_, calibration->id, devices[scan->devices.left].name,
                           devices[scan->devices.right].name};
     report::ScanResult result = scan_result(*scan, names);
+    const Result<std::optional<pretend::SurfaceError>> truth = truth_error(*scan, calibration->rig, session_);
+    if (!truth) {
+      return truth.error();
+    }
+    if (*truth) {
+      result.facts.push_back({"distance from the true surface, RMS / 95 %",
+                              fmt::format("{:.3f} / {:.3f} mm", 1e3 * (*truth)->rms_m, 1e3 * (*truth)->p95_m)});
+    }
     if (scan->moved()) {
       context.note(fmt::format("warning[{}]: {}", to_string(RCode::kPoseMoved), moved_sentence(*scan, names)));
     }
@@ -134,6 +163,9 @@ class Scan : public Command {
     }
     context.json() = report::summary_json(result);
     add_scan_details(context.json(), *scan);
+    if (*truth) {
+      context.json()["truth"] = {{"surface_rms_m", (*truth)->rms_m}, {"surface_p95_m", (*truth)->p95_m}};
+    }
     print(context, result);
     return result.judgement.verdict == "redo" ? ExitCode::kVerdictRedo : ExitCode::kDone;
   }
