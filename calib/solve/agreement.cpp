@@ -143,7 +143,10 @@ Status leave_out_disagreeing_views(const Observations& observations, const std::
                                    std::vector<ViewFit>& views) {
   const std::size_t count = views.size();
   const State start = state;
-  std::vector<bool> used(count, true);
+  std::vector<bool> used;
+  for (const ViewFit& view : views) {
+    used.push_back(view.used);
+  }
   const auto most = static_cast<std::size_t>(std::max(1.0, kMostOdd * static_cast<double>(count)));
   std::size_t odd = 0;
   for (;;) {

@@ -69,8 +69,9 @@ struct Solution {
   std::vector<ViewFit> views;
   std::vector<LensTrial> lenses;
 
-  double rms_px = 0;        ///< kept corners of all devices, each corner of equal weight, two-dimensional
-  double whitened_rms = 0;  ///< 1 when the noise is what the solve took it to be
+  double rms_px = 0;              ///< kept corners of all devices, each corner of equal weight, two-dimensional
+  double all_corners_rms_px = 0;  ///< the same over every corner of the views used, kept or not
+  double whitened_rms = 0;        ///< 1 when the noise is what the solve took it to be
   int iterations = 0;
 
   // With a projector:

@@ -184,6 +184,7 @@ void fill_residuals(const Observations& observations, const Measurements& all, c
   std::vector<std::vector<double>> squares(observations.views.size(), std::vector<double>(state.devices.size(), 0));
   std::vector<std::vector<int>> counts(observations.views.size(), std::vector<int>(state.devices.size(), 0));
   double all_squares = 0;
+  double every_squares = 0;
   double whitened = 0;
   int all_count = 0;
   for (std::size_t d = 0; d < state.devices.size(); ++d) {
@@ -200,6 +201,7 @@ void fill_residuals(const Observations& observations, const Measurements& all, c
       fit.residuals.push_back(
           {.view = corner.view, .id = corner.id, .q = corner.q, .error = error, .kept = flags.corners[i]});
       ++fit.corners_seen;
+      every_squares += error.squaredNorm();
       if (flags.corners[i]) {
         ++fit.corners_kept;
         sum += error.squaredNorm();
@@ -212,6 +214,8 @@ void fill_residuals(const Observations& observations, const Measurements& all, c
     all_count += fit.corners_kept;
     fit.rms_px = fit.corners_kept > 0 ? std::sqrt(sum / fit.corners_kept) : 0;
   }
+  solution.all_corners_rms_px =
+      all.corners.empty() ? 0 : std::sqrt(every_squares / static_cast<double>(all.corners.size()));
   solution.rms_px = all_count > 0 ? std::sqrt(all_squares / all_count) : 0;
 
   double pixel_squares = 0;
@@ -288,6 +292,13 @@ Result<Solution> solve(const Observations& given, const SolveOptions& options) {
                               .rms_px = {},
                               .tilt_rad = 0,
                               .distance_m = 0});
+  }
+  for (std::size_t v = 0; v < observations.views.size(); ++v) {
+    if (std::ranges::all_of(observations.views[v].corners, &std::vector<target::Corner>::empty)) {
+      solution.views[v].used = false;
+      solution.views[v].why = RCode::kTargetNotFound;
+      solution.views[v].why_note = "no device saw the target";
+    }
   }
   // Corners decide which views agree; pixels join afterwards.
   RAYSTEER_TRY(leave_out_disagreeing_views(observations, *alone, state, solution.views));

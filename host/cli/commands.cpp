@@ -10,6 +10,8 @@ const CommandTable& all_commands() {
       CommandRow{"session check", session_check},
       CommandRow{"session info", session_info},
       CommandRow{"session render", session_render},
+      CommandRow{"calibrate cameras", calibrate_cameras},
+      CommandRow{"calibrate projector", calibrate_projector},
       CommandRow{"scan", scan},
       CommandRow{"report", report},
       CommandRow{"target print", target_print},

@@ -31,6 +31,8 @@ const CommandTable& all_commands();
 
 // One function a command, each defined in the file of its name.
 std::unique_ptr<Command> completion();
+std::unique_ptr<Command> calibrate_cameras();
+std::unique_ptr<Command> calibrate_projector();
 std::unique_ptr<Command> explain();
 std::unique_ptr<Command> help();
 std::unique_ptr<Command> report();
