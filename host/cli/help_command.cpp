@@ -1,4 +1,4 @@
-// raysteer help: the help of a command, the manual page, or docs/cli.md.
+// raysteer help: the help of a command, or the manual page.
 #include <string>
 #include <vector>
 
@@ -22,13 +22,12 @@ class Help : public Command {
   void declare(Options& options) override {
     options.argument("COMMAND", &words_, "whose help").is_required = false;
     options.flag("--man", man_, "print the manual page, raysteer(1)");
-    options.flag("--markdown", markdown_, "print docs/cli.md");
   }
 
   Result<ExitCode> run(Context& context) override {
     const CommandTable& table = all_commands();
-    if (man_ || markdown_) {
-      context.print(man_ ? man_page(table) : cli_markdown(table));
+    if (man_) {
+      context.print(man_page(table));
       return ExitCode::kDone;
     }
     const Result<Found> found = find_command(table, words_);
@@ -46,7 +45,6 @@ class Help : public Command {
  private:
   std::vector<std::string> words_;
   bool man_ = false;
-  bool markdown_ = false;
 };
 
 }  // namespace

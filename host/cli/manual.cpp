@@ -108,32 +108,6 @@ std::string man_page(const CommandTable& table) {
   return text + ".SH ERRORS\nMessages carry a code such as R0110;\n.B raysteer explain\nsays its cause and remedy.\n";
 }
 
-std::string cli_markdown(const CommandTable& table) {
-  std::string text =
-      "# The command line\n\nWritten by `raysteer help --markdown`; a test compares the two.\n\n"
-      "Results go to standard output, everything else to standard error. With `--json` a command prints exactly one\n"
-      "object, described by `docs/json/`; a failure prints `{\"error\":{\"code\",\"message\",\"remedy\"}}`. Progress\n"
-      "shows on a terminal and never in a pipe. `--out DIR` is written beside its place and renamed when it is\n"
-      "complete: it appears whole or not at all, replaces an earlier output of Raysteer, and refuses a folder that "
-      "holds\n"
-      "other files. Ctrl-C leaves nothing half-written.\n\n## Exit codes\n\n| code | meaning |\n|---|---|\n";
-  for (const ExitCodeRow& row : all_exit_codes()) {
-    text += fmt::format("| {} | {} |\n", static_cast<int>(row.code), row.meaning);
-  }
-  text += "\n## Environment\n\n| variable | meaning |\n|---|---|\n";
-  for (const Variable& variable : kEnvironment) {
-    text += fmt::format("| `{}` | {} |\n", variable.name, variable.meaning);
-  }
-  text += "\n## Commands\n";
-  for (const CommandRow& row : table.commands) {
-    const std::unique_ptr<Command> command = row.make();
-    const std::unique_ptr<Declared> declared = declare(*command);
-    text += fmt::format("\n### raysteer {}\n\n```text\n{}```\n", row.path,
-                        help_of_command(row.path, command->manual(), declared->options));
-  }
-  return text;
-}
-
 std::string errors_markdown() {
   std::string text =
       "# Errors\n\nWritten by `raysteer explain --markdown`; a test compares the two. The first digit after R0 groups "

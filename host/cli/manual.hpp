@@ -1,4 +1,4 @@
-// pure: manual page and docs/cli.md, from the same lists that parsing and --help use; docs/errors.md from the codes.
+// pure: the manual page, from the same lists that parsing and --help use; docs/errors.md from the codes.
 #pragma once
 
 #include <string>
@@ -9,9 +9,6 @@ namespace raysteer::host::cli {
 
 /// raysteer(1) in man(7) macros.
 std::string man_page(const CommandTable& table);
-
-/// docs/cli.md
-std::string cli_markdown(const CommandTable& table);
 
 /// docs/errors.md
 std::string errors_markdown();
