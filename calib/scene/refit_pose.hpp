@@ -21,7 +21,7 @@ struct PoseRefit {
   double baseline_turned_rad = 0;          ///< angle between the two directions of the baseline
   double chi_square = 0;                   ///< of the move against both uncertainties, 5 degrees of freedom
   double effect_px = 0;                    ///< RMS by which the move changes the disagreement of the matches
-  bool moved = false;                      ///< beyond chance, and worth more than 0.1 px
+  bool moved = false;                      ///< beyond chance, and worth more than 0.25 px RMS
   std::size_t fitted = 0, held_out = 0;    ///< matches
   double held_out_before_px = 0;           ///< 1.4826 MAD of the disagreement of the matches not fitted
   double held_out_after_px = 0;
