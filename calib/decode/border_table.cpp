@@ -31,6 +31,9 @@ constexpr double kLeastDisplacement = 0.1;
 constexpr int kRounds = 12;
 constexpr double kRelaxation = 1.5;
 constexpr int kFewestCrossings = 8;
+/// Between one crossing and the next of a line, in borders and in pixels.
+constexpr int kMaxStep = 6;
+constexpr float kMaxPause = 64;
 
 template <class T>
 std::vector<Segment> find_segments(const GrayStore<T>& lines, int count, const GrayLimits& limits) {
@@ -61,16 +64,22 @@ std::vector<Segment> find_segments(const GrayStore<T>& lines, int count, const G
       }
       segment = {};
     };
-    for (int i = 0; i + 1 < width; ++i) {
-      if (gaps.variance_a[i] == GapRow::kLost) {
+    // A pixel or two that are not decoded leave a line whole; a jump of the code breaks it.
+    const auto push = [&](const Crossing& crossing) {
+      if (!segment.empty() && (std::abs(crossing.border - segment.back().border) > kMaxStep ||
+                               crossing.place - segment.back().place > kMaxPause)) {
         close();
-      } else if (gaps.variance_a[i] != GapRow::kNone) {
-        segment.push_back(
-            {static_cast<float>(i) + gaps.place_a[i], static_cast<int>(gaps.number_a[i]), gaps.variance_a[i]});
-        if (gaps.number_a[i] != gaps.number_b[i]) {
-          segment.push_back(
-              {static_cast<float>(i) + gaps.place_b[i], static_cast<int>(gaps.number_b[i]), gaps.variance_b[i]});
-        }
+      }
+      segment.push_back(crossing);
+    };
+    for (int i = 0; i + 1 < width; ++i) {
+      if (gaps.variance_a[i] == GapRow::kLost || gaps.variance_a[i] == GapRow::kNone) {
+        continue;
+      }
+      const auto place = static_cast<float>(i);
+      push({place + gaps.place_a[i], static_cast<int>(gaps.number_a[i]), gaps.variance_a[i]});
+      if (gaps.number_a[i] != gaps.number_b[i]) {
+        push({place + gaps.place_b[i], static_cast<int>(gaps.number_b[i]), gaps.variance_b[i]});
       }
     }
     close();

@@ -78,9 +78,12 @@ Result<CodeMap> decode(const PatternSequence& sequence, std::span<const ImageVie
   const int width = frames[0].width();
   const int height = frames[0].height();
   RAYSTEER_TRY(check_size(width, height, 8));
-  const bool phases = !planned->phases.empty();
+  const auto by_inverse = [](const AxisPlan& axis) {
+    return axis.phases.empty() && axis.threshold == Threshold::kInverse;
+  };
+  const bool banded = by_inverse(planned->x) && by_inverse(planned->y);
   Engine<std::uint8_t> engine(std::move(planned).value(), width, height, 8, options);
-  if (!phases) {
+  if (banded) {
     return engine.decode(frames);
   }
   for (const ImageView<const std::uint8_t>& frame : frames) {

@@ -27,8 +27,10 @@ constexpr double kDirectStripe = 8;
 constexpr int kFewestNeighbours = 3;
 /// A half period from Gray and the phase may disagree by this share of a period before the pixel is ambiguous.
 constexpr double kMaxDisagreement = 0.45;
-/// A sinusoid's residual above this many variances is no sinusoid (algorithms 2.5).
+/// A residual above this many times what noise and the projector's harmonics explain is no sinusoid (algorithms 2.5).
 constexpr double kMaxChi2 = 9;
+/// Noise of phases is looked for where there is light of at least this amplitude, DN of 255.
+constexpr double kLitModulation = 2;
 
 /// Stripes of bit b are 2^(b+1) codes wide, but for the most significant.
 double stripe_of(const PatternBlock& block, int bit) { return std::ldexp(block.stripe_px, bit + 1); }
@@ -85,7 +87,9 @@ void Engine<T>::restart() {
   white_seen_ = black_seen_ = false;
   waiting_.clear();
   estimate_ = NoiseEstimate(full_scale_);
-  gray_x_.sampled = gray_y_.sampled = false;
+  harmonics_ = 0;
+  gray_x_.sampled.clear();
+  gray_y_.sampled.clear();
   for (PhaseSums& phase : phases_) {
     phase.clear();
   }
@@ -214,19 +218,17 @@ void Engine<T>::fold_frame(Axis axis, int bit, ImageView<const T> p, ImageView<c
 template <class T>
 void Engine<T>::fold_threshold(const Pattern& pattern, ImageView<const T> frame) {
   // The inverse that was not taken: the threshold lies half-way between it and the pattern.
-  const Axis axis = pattern.block.axis;
-  const AxisPlan& plan = plan_.axis(axis);
-  std::vector<T> inverse(static_cast<std::size_t>(width_));
+  const AxisPlan& plan = plan_.axis(pattern.block.axis);
+  Image<T> inverse = Image<T>::uninitialised(width_, height_);
   for (int y = 0; y < height_; ++y) {
-    const T* p = frame.row(y);
     for (int x = 0; x < width_; ++x) {
       const int sum = plan.threshold == Threshold::kPhaseMean
                           ? static_cast<int>(std::lround(2 * phases_[plan.phases.front()].mean(x, y)))
                           : white_(x, y) + black_(x, y);
-      inverse[x] = inverse_of(p[x], sum);
+      inverse(x, y) = inverse_of(frame(x, y), sum);
     }
-    fold(gray(axis).roles[pattern.bit], p, inverse.data(), width_, gray(axis).store.row(y));
   }
+  fold_frame(pattern.block.axis, pattern.bit, frame, inverse.view());
 }
 
 template <class T>
@@ -237,32 +239,40 @@ T Engine<T>::inverse_of(T pattern, int sum) const {
 template <class T>
 void Engine<T>::sample_noise(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
   // Pattern plus inverse is white plus black, whatever the bit: from one coarse bit to the next only noise changes, and
-  // some global light, which a neighbouring pixel shares.
+  // some global light, which a neighbouring pixel shares. A pattern without inverse is compared with the last coarse
+  // one that was as bright.
   if (!role.coarse) {
     return;
   }
   GrayState& state = gray(axis);
+  const bool pairs = plan_.axis(axis).gray->inverse;
   const auto saturated = static_cast<int>(options_.saturation * full_scale_);
   const int columns = (width_ - 1) / kSampledColumns;
   const int rows = (height_ + kSampledRows - 1) / kSampledRows;
-  state.sampled_sum.resize(2 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  const auto sum = [&](int x, int y) {
-    const int high = std::max(p(x, y), q(x, y));
-    return high < saturated ? p(x, y) + q(x, y) : -1;
-  };
-  int* before = state.sampled_sum.data();
+  constexpr int kUnknown = -1;
+  // Two pixels side by side, each unlit and lit; pairs use the first of the two only.
+  state.sampled.resize(4 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), kUnknown);
+  int* before = state.sampled.data();
   for (int y = 0; y < height_; y += kSampledRows) {
-    for (int k = 0; k < columns; ++k, before += 2) {
-      const int here = sum(kSampledColumns * k, y);
-      const int beside = sum(kSampledColumns * k + 1, y);
-      if (state.sampled && std::min({here, beside, before[0], before[1]}) >= 0) {
-        estimate_.add(0.5 * here, here - before[0] - (beside - before[1]), 8);
+    for (int k = 0; k < columns; ++k, before += 4) {
+      const int x = kSampledColumns * k;
+      if (std::max({p(x, y), q(x, y), p(x + 1, y), q(x + 1, y)}) >= saturated) {
+        continue;
       }
-      before[0] = here;
-      before[1] = beside;
+      const bool lit = p(x, y) > q(x, y);
+      if (!pairs && lit != (p(x + 1, y) > q(x + 1, y))) {
+        continue;
+      }
+      int* last = before + (!pairs && lit ? 2 : 0);
+      const int here = pairs ? p(x, y) + q(x, y) : p(x, y);
+      const int beside = pairs ? p(x + 1, y) + q(x + 1, y) : p(x + 1, y);
+      if (last[0] != kUnknown) {
+        estimate_.add(pairs ? 0.5 * here : here, here - last[0] - (beside - last[1]), pairs ? 8 : 4);
+      }
+      last[0] = here;
+      last[1] = beside;
     }
   }
-  state.sampled = true;
 }
 
 template <class T>
@@ -282,6 +292,9 @@ int Engine<T>::line_place(Axis axis, int line) const {
 
 template <class T>
 void Engine<T>::sample_lines(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
+  if (!options_.sub_pixel || !plan_.axis(axis).phases.empty()) {
+    return;
+  }
   GrayState& state = gray(axis);
   for (int line = 0; line < lines(axis); ++line) {
     const int place = line_place(axis, line);
@@ -315,15 +328,18 @@ void Engine<T>::sample_phase_noise(const PhaseSums& sums) {
   if (sums.block().steps < 4) {
     return;
   }
-  // The residual has steps - 3 degrees of freedom; as one difference each it would look less scattered than it is,
-  // so its root gets the sign-free share of one: sqrt of a chi-square with many degrees is near its mean.
+  std::vector<float> departures;
   for (int y = 0; y < height_; y += kSampledRows / 2) {
     for (int x = 0; x < width_; x += kSampledColumns / 2) {
       const PhaseSums::Pixel pixel = sums.pixel(x, y);
-      if (pixel.peak < options_.saturation * full_scale_) {
-        estimate_.add(pixel.mean, std::sqrt(pixel.residual), 1);
+      if (pixel.peak < options_.saturation * full_scale_ && pixel.modulation > dn(kLitModulation)) {
+        estimate_.add(pixel.mean, pixel.noise, 1);
+        departures.push_back(static_cast<float>(pixel.residual / (pixel.modulation * pixel.modulation)));
       }
     }
+  }
+  if (!departures.empty()) {
+    harmonics_ = std::max(harmonics_, static_cast<double>(median(departures)));
   }
 }
 
@@ -463,7 +479,7 @@ void Engine<T>::place_phases(Axis which, CodeMap& map) {
             pixel.modulation * pixel.modulation < options_.min_sigma * options_.min_sigma * noise) {
           reasons |= kLowModulation;
         }
-        if (pixel.residual > kMaxChi2 * noise) {
+        if (pixel.residual > kMaxChi2 * (noise + harmonics_ * pixel.modulation * pixel.modulation)) {
           reasons |= kAmbiguous;
         }
       }
@@ -579,8 +595,6 @@ Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
       white = frames[i];
     } else if (pattern.block.kind == PatternKind::kBlack) {
       black = frames[i];
-    } else if (!pattern.block.inverse) {
-      pairs.push_back({pattern.block.axis, pattern.bit, frames[i], {}});
     } else if (pattern.inverted != pattern.block.inverse_first) {
       const bool second = pattern.inverted;
       pairs.push_back({pattern.block.axis, pattern.bit, frames[second ? i - 1 : i], frames[second ? i : i - 1]});
@@ -591,13 +605,10 @@ Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
       start(axis, kBandRows);
     }
   }
-  std::vector<T> inverse(static_cast<std::size_t>(std::max(width_, height_)));
   for (const Pair& pair : pairs) {
-    if (!pair.q.empty()) {
-      const BitRole& role = gray(pair.axis).roles[pair.bit];
-      sample_noise(pair.axis, role, pair.p, pair.q);
-      sample_lines(pair.axis, role, pair.p, pair.q);
-    }
+    const BitRole& role = gray(pair.axis).roles[pair.bit];
+    sample_noise(pair.axis, role, pair.p, pair.q);
+    sample_lines(pair.axis, role, pair.p, pair.q);
   }
   fit_noise();
   CodeMap map = make_map();
@@ -614,14 +625,7 @@ Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
       const BitRole& role = gray(pair.axis).roles[pair.bit];
       const GrayStore<T>& store = gray(pair.axis).store;
       for (int v = first; v < last; ++v) {
-        const T* p = pair.p.row(v);
-        const T* q = pair.q.empty() ? inverse.data() : pair.q.row(v);
-        if (pair.q.empty()) {
-          for (int u = 0; u < width_; ++u) {
-            inverse[u] = inverse_of(p[u], white(u, v) + black(u, v));
-          }
-        }
-        fold(role, p, q, width_, store.row(v - first));
+        fold(role, pair.p.row(v), pair.q.row(v), width_, store.row(v - first));
       }
     }
     for (int v = first; v < last; ++v) {

@@ -22,9 +22,8 @@ class Engine {
 
   Status push(ImageView<const T> frame);
   Result<CodeMap> finish();
-  /// All frames at once, a few rows at a time. Pure Gray sequences only (no phase blocks).
+  /// All frames at once, a few rows at a time. Only Gray patterns with inverse, white and black.
   Result<CodeMap> decode(std::span<const ImageView<const T>> frames);
-  bool has_phase() const { return !plan_.phases.empty(); }
 
  private:
   struct GrayState {
@@ -32,15 +31,14 @@ class Engine {
     GrayStore<T> store;
     GrayStore<T> lines;  ///< sums of sampled lines across the stripes
     std::vector<T> line_p, line_q;
-    std::vector<int> sampled_sum;  ///< p + q of the coarse bit before, at the sampled pixels
-    bool sampled = false;
+    std::vector<int> sampled;  ///< what the coarse bit before showed at the sampled pixels
   };
 
   struct Pair {
     Axis axis;
     int bit;
     ImageView<const T> p;
-    ImageView<const T> q;  ///< empty: thresholded by white and black
+    ImageView<const T> q;
   };
   using Placers = std::vector<std::pair<Axis, GrayAxis<T>>>;
 
@@ -74,6 +72,7 @@ class Engine {
   int next_ = 0;
   NoiseEstimate estimate_;
   NoiseModel noise_;
+  double harmonics_ = 0;  ///< residual of a usual pixel by its modulation squared: gamma
 
   GrayState gray_x_, gray_y_;
   std::vector<PhaseSums> phases_;

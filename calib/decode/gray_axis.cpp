@@ -122,7 +122,7 @@ template <class T>
 void GrayAxis<T>::place(int v) {
   place_between_borders({before_.data(), after_.data(), reach_, static_cast<float>(block_.stripe_px),
                          static_cast<float>(block_.offset_px), borders_.place.empty() ? nullptr : borders_.place.data(),
-                         borders_.excess_variance},
+                         static_cast<int>(borders_.place.size()), borders_.excess_variance},
                         code_->row(v), limits_.width, value_->row(v), variance_->row(v), scratch_.data());
 }
 

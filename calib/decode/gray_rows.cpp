@@ -202,6 +202,8 @@ template <class T>
   for (int k = 0; k < 6; ++k) {
     side[k] = scratch + k * static_cast<std::ptrdiff_t>(count);
   }
+  std::fill(side[1], side[1] + count, 0.0F);
+  std::fill(side[4], side[4] + count, 0.0F);
   std::fill(side[2], side[2] + count, GapRow::kNone);
   std::fill(side[5], side[5] + count, GapRow::kNone);
   for (int k = 0; k < search.reach; ++k) {
@@ -221,7 +223,9 @@ template <class T>
   if (search.border != nullptr) {
     for (int k : {1, 4}) {
       for (int i = 0; i < count; ++i) {
-        side[k][i] = search.border[static_cast<int>(side[k][i])];
+        // Where nothing was found the number is none; what comes of it is not used.
+        const int n = greater(lesser(static_cast<int>(side[k][i]), search.borders - 1), 0);
+        side[k][i] = search.border[n];
       }
     }
   }
@@ -241,18 +245,21 @@ template <class T>
     const float va = variance_after[i];
     const float span = place_after[i] - place_before[i];
     const float rise = border_after[i] - border_before[i];
-    // Not between two borders: a side is missing, or the surface turns here and shows the same border twice.
-    const int between = (vb > 0 ? 1 : 0) & (va > 0 ? 1 : 0) & (vb < GapRow::kNone ? 1 : 0) &
-                        (va < GapRow::kNone ? 1 : 0) & (rise != 0 ? 1 : 0);
+    // Not between two borders: a side is missing, or the surface turns here and shows the same border twice. Borders
+    // that say less than the stripe itself are not asked either.
+    const int bracketed = (vb > 0 ? 1 : 0) & (va > 0 ? 1 : 0) & (vb < GapRow::kNone ? 1 : 0) &
+                          (va < GapRow::kNone ? 1 : 0) & (rise != 0 ? 1 : 0);
     const float t = -place_before[i] / greater(span, 1e-3F);
     const float slope = rise / greater(span, 0.1F);
     const float weight_before = (1 - t) * (1 - t);
     const float weight_after = t * t;
     const float spread =
         slope * slope * (weight_before * vb + weight_after * va) + excess * (weight_before + weight_after);
+    constexpr float kEvenSpread = 1.0F / 12.0F;
+    const int between = bracketed & (spread < kEvenSpread ? 1 : 0);
     const float middle = static_cast<float>(code[i]) + 0.5F;
     const float number = between != 0 ? border_before[i] + t * rise : middle;
-    const float scatter = between != 0 ? spread : 1.0F / 12.0F;
+    const float scatter = between != 0 ? spread : kEvenSpread;
     const float coded = code[i] != CodeMap::kNoCode ? 0.0F : kNan;
     value[i] = number * stripe + origin + coded;
     variance[i] = scatter * stripe * stripe + coded;

@@ -63,6 +63,7 @@ struct BorderSearch {
   float stripe_px;
   float offset_px;
   const float* border;    ///< place of border n in stripes; null: n
+  int borders;            ///< how many of them
   float excess_variance;  ///< of a border's place, stripes^2
 };
 

@@ -49,7 +49,7 @@ template <class T, bool kFinest, bool kDirect, bool kCoarse>
     }
     if constexpr (kDirect) {
       const T most = direct[i];
-      unlit[i] = difference > most ? low : unlit[i];
+      unlit[i] = difference < most ? unlit[i] : low;
       direct[i] = greater(most, difference);
     }
     if constexpr (kCoarse) {

@@ -14,7 +14,8 @@ constexpr double kTurn = 2 * std::numbers::pi;
 template <class T>
 [[gnu::always_inline]] inline void add_row(const T* __restrict frame, int count, float sine_k, float cosine_k,
                                            float* __restrict sine, float* __restrict cosine, float* __restrict sum,
-                                           float* __restrict squares, float* __restrict peak) {
+                                           float* __restrict squares, float sign, float* __restrict alternating,
+                                           float* __restrict peak) {
   RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     const float value = frame[i];
@@ -22,18 +23,20 @@ template <class T>
     cosine[i] += value * cosine_k;
     sum[i] += value;
     squares[i] += value * value;
-    peak[i] = std::max(peak[i], value);
+    alternating[i] += sign * value;
+    peak[i] = peak[i] < value ? value : peak[i];
   }
 }
 
 RAYSTEER_CLONES void add_row_8(const std::uint8_t* frame, int count, float sine_k, float cosine_k, float* sine,
-                               float* cosine, float* sum, float* squares, float* peak) {
-  add_row(frame, count, sine_k, cosine_k, sine, cosine, sum, squares, peak);
+                               float* cosine, float* sum, float* squares, float sign, float* alternating, float* peak) {
+  add_row(frame, count, sine_k, cosine_k, sine, cosine, sum, squares, sign, alternating, peak);
 }
 
 RAYSTEER_CLONES void add_row_16(const std::uint16_t* frame, int count, float sine_k, float cosine_k, float* sine,
-                                float* cosine, float* sum, float* squares, float* peak) {
-  add_row(frame, count, sine_k, cosine_k, sine, cosine, sum, squares, peak);
+                                float* cosine, float* sum, float* squares, float sign, float* alternating,
+                                float* peak) {
+  add_row(frame, count, sine_k, cosine_k, sine, cosine, sum, squares, sign, alternating, peak);
 }
 
 double fraction(double value) { return value - std::floor(value); }
@@ -46,10 +49,11 @@ PhaseSums::PhaseSums(const PatternBlock& block, int width, int height)
       cosine_(width, height),
       sum_(width, height),
       squares_(width, height),
+      alternating_(width, height),
       peak_(width, height) {}
 
 void PhaseSums::clear() {
-  for (Image<float>* plane : {&sine_, &cosine_, &sum_, &squares_, &peak_}) {
+  for (Image<float>* plane : {&sine_, &cosine_, &sum_, &squares_, &alternating_, &peak_}) {
     plane->fill(0);
   }
 }
@@ -59,13 +63,14 @@ void PhaseSums::add_frame(int step, ImageView<const T> frame) {
   const double angle = kTurn * step / block_.steps;
   const auto sine_k = static_cast<float>(std::sin(angle));
   const auto cosine_k = static_cast<float>(std::cos(angle));
+  const float sign = step % 2 == 0 ? 1.0F : -1.0F;
   for (int y = 0; y < frame.height(); ++y) {
     if constexpr (sizeof(T) == 1) {
       add_row_8(frame.row(y), frame.width(), sine_k, cosine_k, sine_.row(y), cosine_.row(y), sum_.row(y),
-                squares_.row(y), peak_.row(y));
+                squares_.row(y), sign, alternating_.row(y), peak_.row(y));
     } else {
       add_row_16(frame.row(y), frame.width(), sine_k, cosine_k, sine_.row(y), cosine_.row(y), sum_.row(y),
-                 squares_.row(y), peak_.row(y));
+                 squares_.row(y), sign, alternating_.row(y), peak_.row(y));
     }
   }
 }
@@ -87,6 +92,8 @@ PhaseSums::Pixel PhaseSums::pixel(int x, int y) const {
     const double rest = squares_(x, y) - total * total / n - 2 / n * (s * s + c * c);
     pixel.residual = std::max(0.0, rest) / (n - 3);
   }
+  pixel.noise =
+      block_.steps >= 6 && block_.steps % 2 == 0 ? alternating_(x, y) / std::sqrt(n) : std::sqrt(pixel.residual);
   pixel.peak = peak_(x, y);
   return pixel;
 }

@@ -12,7 +12,8 @@
 
 namespace raysteer::calib::decode {
 
-/// Sums over the steps of one block (algorithms 2.2), and of squares for the residual.
+/// Sums over the steps of one block (algorithms 2.2), of squares for the residual, and with alternating sign for the
+/// noise.
 class PhaseSums {
  public:
   PhaseSums(const PatternBlock& block, int width, int height);
@@ -29,6 +30,9 @@ class PhaseSums {
     double mean = 0;        ///< A, DN
     double residual = 0;    ///< sum of squared departures from the sinusoid / (steps - 3), DN^2; 0 for 3 steps
     double peak = 0;        ///< brightest step, DN
+    /// A difference with the variance of one frame's pixel: what an even number of 6 steps or more says at their
+    /// highest frequency, where a projector's gamma has put next to nothing; else the root of the residual.
+    double noise = 0;
   };
   Pixel pixel(int x, int y) const;
   /// Variance of `place`, px^2.
@@ -39,7 +43,7 @@ class PhaseSums {
   void add_frame(int step, ImageView<const T> frame);
 
   PatternBlock block_;
-  Image<float> sine_, cosine_, sum_, squares_, peak_;
+  Image<float> sine_, cosine_, sum_, squares_, alternating_, peak_;
 };
 
 /// The coordinate from several periods without a Gray code.
