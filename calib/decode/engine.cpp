@@ -10,20 +10,20 @@
 namespace raysteer::calib::decode {
 namespace {
 
-/// Noise is estimated from every 16th row and every 4th column: 47,000 pixels of 3 million.
-constexpr int kSampledRows = 16;
-constexpr int kSampledColumns = 4;
+/// Noise is estimated from a grid of at most this many pixels: enough for 1 % at each of 16 signal levels.
+constexpr int kNoiseColumns = 256;
+constexpr int kNoiseRows = 64;
 /// Lines across the stripes from which the borders' places are learnt: each border is crossed by most of them.
 constexpr int kSampledLines = 96;
 constexpr int kColumnsTogether = 16;
-/// Rows whose sums stay in the second-level cache, 16 x 2048 x 20 bytes = 640 kB at most.
-constexpr int kBandRows = 8;
+/// Rows whose sums stay in the second-level cache: 4 x 2048 x 20 bytes.
+constexpr int kBandRows = 4;
 /// Where the frames tell nothing about their noise: a camera of 1.5 DN and 40 electrons a DN.
 constexpr double kUsualReadSigma = 1.5;
 constexpr double kUsualElectrons = 40;
 /// Stripes at least this wide show direct light even where the projector is blurred by 2 px.
 constexpr double kDirectStripe = 8;
-/// A pixel needs this many of 8 neighbours: the side of a depth edge has at least three.
+/// A pixel needs this many like it of 8 neighbours: the side of a depth edge has at least three.
 constexpr int kFewestNeighbours = 3;
 /// A half period from Gray and the phase may disagree by this share of a period before the pixel is ambiguous.
 constexpr double kMaxDisagreement = 0.45;
@@ -247,15 +247,17 @@ void Engine<T>::sample_noise(Axis axis, const BitRole& role, ImageView<const T> 
   GrayState& state = gray(axis);
   const bool pairs = plan_.axis(axis).gray->inverse;
   const auto saturated = static_cast<int>(options_.saturation * full_scale_);
-  const int columns = (width_ - 1) / kSampledColumns;
-  const int rows = (height_ + kSampledRows - 1) / kSampledRows;
+  const int step_x = (width_ + kNoiseColumns - 1) / kNoiseColumns;
+  const int step_y = (height_ + kNoiseRows - 1) / kNoiseRows;
+  const int columns = (width_ - 1) / step_x;
+  const int rows = (height_ + step_y - 1) / step_y;
   constexpr int kUnknown = -1;
   // Two pixels side by side, each unlit and lit; pairs use the first of the two only.
   state.sampled.resize(4 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), kUnknown);
   int* before = state.sampled.data();
-  for (int y = 0; y < height_; y += kSampledRows) {
+  for (int y = 0; y < height_; y += step_y) {
     for (int k = 0; k < columns; ++k, before += 4) {
-      const int x = kSampledColumns * k;
+      const int x = step_x * k;
       if (std::max({p(x, y), q(x, y), p(x + 1, y), q(x + 1, y)}) >= saturated) {
         continue;
       }
@@ -328,9 +330,10 @@ void Engine<T>::sample_phase_noise(const PhaseSums& sums) {
   if (sums.block().steps < 4) {
     return;
   }
+  const int step = std::max(1, std::min(width_ / kNoiseColumns, height_ / kNoiseRows) / 2);
   std::vector<float> departures;
-  for (int y = 0; y < height_; y += kSampledRows / 2) {
-    for (int x = 0; x < width_; x += kSampledColumns / 2) {
+  for (int y = 0; y < height_; y += step) {
+    for (int x = 0; x < width_; x += step) {
       const PhaseSums::Pixel pixel = sums.pixel(x, y);
       if (pixel.peak < options_.saturation * full_scale_ && pixel.modulation > dn(kLitModulation)) {
         estimate_.add(pixel.mean, pixel.noise, 1);
@@ -413,7 +416,11 @@ Result<CodeMap> Engine<T>::finish() {
     }
   }
   restart();
-  return complete(std::move(map));
+  RowCheck check(map, resemblance());
+  for (int v = 0; v < height_; ++v) {
+    check.row(v);
+  }
+  return complete(std::move(map), check);
 }
 
 template <class T>
@@ -533,51 +540,33 @@ void Engine<T>::place_phases(Axis which, CodeMap& map) {
 }
 
 template <class T>
-Result<CodeMap> Engine<T>::complete(CodeMap map) {
-  if (options_.neighbours) {
-    const auto reach = [](int codes, int camera) { return 2 + (2 * codes + camera - 1) / camera; };
-    const auto codes = [&](const AxisPlan& axis) {
-      return axis.gray && axis.phases.empty() ? codes_of(*axis.gray, axis.panel) : axis.panel;
-    };
-    mark_edges(map, reach(codes(plan_.x), width_), reach(codes(plan_.y), height_), kFewestNeighbours);
-  }
+Resemblance Engine<T>::resemblance() const {
+  // Codes a camera pixel if the camera saw just the panel, twice that for a slanted surface, and two for noise.
+  const auto reach = [](const AxisPlan& axis, int camera) {
+    const int codes = axis.gray && axis.phases.empty() ? codes_of(*axis.gray, axis.panel) : axis.panel;
+    return 2 + (2 * codes + camera - 1) / camera;
+  };
+  return {.reach_x = reach(plan_.x, width_),
+          .reach_y = reach(plan_.y, height_),
+          .fewest = options_.neighbours ? kFewestNeighbours : 0};
+}
+
+template <class T>
+Result<CodeMap> Engine<T>::complete(CodeMap map, const RowCheck& rows) const {
   Diagnostics& diagnostics = map.diagnostics;
   diagnostics.pixels = map.mask.size();
+  diagnostics.valid = rows.valid();
   diagnostics.read_sigma_dn = noise_.read_sigma_dn;
   diagnostics.electrons_per_dn = noise_.electrons_per_dn;
-  std::array<std::size_t, 256> counts{};
-  for (int v = 0; v < height_; ++v) {
-    for (int u = 0; u < width_; ++u) {
-      ++counts[map.mask(u, v)];
-    }
-  }
-  diagnostics.valid = counts[kValid];
   if (plan_.phases.empty()) {
-    std::size_t covered = 0;
-    for (std::size_t mask = 0; mask < counts.size(); ++mask) {
-      covered += (mask & (kShadow | kLowModulation | kSaturated)) == 0 ? counts[mask] : 0;
-    }
-    diagnostics.coverage = static_cast<double>(covered) / static_cast<double>(diagnostics.pixels);
+    diagnostics.coverage = static_cast<double>(rows.covered()) / static_cast<double>(diagnostics.pixels);
   }
   if (diagnostics.valid == 0) {
-    std::size_t saturated = 0;
-    for (std::size_t mask = 0; mask < counts.size(); ++mask) {
-      saturated += (mask & kSaturated) != 0 ? counts[mask] : 0;
-    }
-    if (2 * saturated > diagnostics.pixels) {
-      return fail(RCode::kFramesSaturated, std::to_string(100 * saturated / diagnostics.pixels) +
+    if (2 * rows.saturated() > diagnostics.pixels) {
+      return fail(RCode::kFramesSaturated, std::to_string(100 * rows.saturated() / diagnostics.pixels) +
                                                " % of the pixels are saturated and none could be decoded");
     }
     return fail(RCode::kNothingDecoded, "none of " + std::to_string(diagnostics.pixels) + " pixels has a usable code");
-  }
-  // What is not valid has no coordinate, on either axis.
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  for (Image<float>* image : {&map.x, &map.y, &map.variance_x, &map.variance_y}) {
-    float* pixels = image->data();
-    const std::uint8_t* mask = map.mask.data();
-    for (std::size_t i = 0; i < image->size(); ++i) {
-      pixels[i] = mask[i] == kValid ? pixels[i] : kNan;
-    }
   }
   return map;
 }
@@ -613,6 +602,11 @@ Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
   fit_noise();
   CodeMap map = make_map();
   Placers placers = make_placers(map);
+  RowCheck check(map, resemblance());
+  int lag = 1;  // a row is checked against the one below it
+  for (const auto& [axis, placer] : placers) {
+    lag = std::max(lag, placer.lag());
+  }
   const bool references = plan_.white && plan_.black;
   for (int first = 0; first < height_; first += kBandRows) {
     const int last = std::min(first + kBandRows, height_);
@@ -633,13 +627,19 @@ Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
         placer.row(gray(axis).store.row(v - first), references ? white.row(v) : nullptr,
                    references ? black.row(v) : nullptr, map.mask.row(v));
       }
+      if (v >= lag) {
+        check.row(v - lag);
+      }
     }
   }
   for (auto& [axis, placer] : placers) {
     placer.finish();
   }
+  for (int v = std::max(0, height_ - lag); v < height_; ++v) {
+    check.row(v);
+  }
   restart();
-  return complete(std::move(map));
+  return complete(std::move(map), check);
 }
 
 template class Engine<std::uint8_t>;

@@ -9,6 +9,7 @@
 #include "calib/decode/decoder.hpp"
 #include "calib/decode/gray_axis.hpp"
 #include "calib/decode/gray_sums.hpp"
+#include "calib/decode/neighbours.hpp"
 #include "calib/decode/noise.hpp"
 #include "calib/decode/phase_rows.hpp"
 #include "calib/decode/plan.hpp"
@@ -62,7 +63,8 @@ class Engine {
   Placers make_placers(CodeMap& map);
   T inverse_of(T pattern, int sum) const;
   void place_phases(Axis which, CodeMap& map);
-  Result<CodeMap> complete(CodeMap map);
+  Resemblance resemblance() const;
+  Result<CodeMap> complete(CodeMap map, const RowCheck& rows) const;
   double dn(double of_255) const { return of_255 * full_scale_ / 255; }
 
   Plan plan_;

@@ -23,6 +23,8 @@ class GrayAxis {
 
   /// Row v = 0, 1, 2 ... Reasons are or-ed into `mask`.
   void row(const GraySums<T>& sums, const T* white, const T* black, std::uint8_t* mask);
+  /// Row v - lag() has its coordinates when row v has been given.
+  int lag() const { return axis_ == Axis::kY ? reach_ : 0; }
   /// After the last row.
   void finish();
 

@@ -1,12 +1,38 @@
-// Does a pixel agree with those around it?
+// Last look at a row: does each pixel agree with those around it? What is not valid loses its coordinate.
 #pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "calib/decode/code_map.hpp"
 
 namespace raysteer::calib::decode {
 
-/// A valid pixel whose code (per axis) fewer than `fewest` of its 8 neighbours share within `reach_x`, `reach_y`: it
-/// mixes two surfaces, or a bit flipped. Sets kEdge. Codes of unused axes are empty.
-void mark_edges(CodeMap& map, int reach_x, int reach_y, int fewest);
+/// A valid pixel that fewer than `fewest` of its 8 neighbours resemble in every code, to within `reach`, mixes two
+/// surfaces or has a flipped bit: kEdge.
+struct Resemblance {
+  int reach_x = 0;
+  int reach_y = 0;
+  int fewest = 3;  ///< 0: nobody is asked. The side of a depth edge has three.
+};
+
+class RowCheck {
+ public:
+  RowCheck(CodeMap& map, const Resemblance& resemblance);
+  /// Row v; codes of rows v - 1 to v + 1 and coordinates of row v must be there.
+  void row(int v);
+
+  std::size_t valid() const { return valid_; }
+  std::size_t saturated() const { return saturated_; }
+  /// Pixels that are neither in shadow nor weak nor saturated.
+  std::size_t covered() const { return covered_; }
+
+ private:
+  CodeMap& map_;
+  Resemblance resemblance_;
+  std::vector<std::uint16_t> agreeing_;
+  std::size_t valid_ = 0, saturated_ = 0, covered_ = 0;
+};
 
 }  // namespace raysteer::calib::decode
