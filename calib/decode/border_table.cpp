@@ -31,6 +31,8 @@ constexpr double kLeastDisplacement = 0.1;
 constexpr int kRounds = 12;
 constexpr double kRelaxation = 1.5;
 constexpr int kFewestCrossings = 8;
+/// One crossing of this many is enough for the median of the scatter.
+constexpr int kScatterShare = 7;
 /// Between one crossing and the next of a line, in borders and in pixels.
 constexpr int kMaxStep = 6;
 constexpr float kMaxPause = 64;
@@ -194,7 +196,11 @@ BorderTable learn_borders(const GrayStore<T>& lines, int count, const GrayLimits
   // Scatter beyond noise, by medians: robust against the crossings of edges.
   std::vector<float> squares;
   std::vector<float> expected;
+  int judged = 0;
   judge(segments, table, [&](const Crossing& crossing, double residual, double slope) {
+    if (++judged % kScatterShare != 0) {
+      return;
+    }
     squares.push_back(static_cast<float>(residual * residual));
     expected.push_back(static_cast<float>(slope * slope) * crossing.variance);
   });

@@ -61,12 +61,12 @@ Status Decoder::push(ImageView<const std::uint16_t> frame) {
   return fail(RCode::kFrameDepth, "a 16-bit frame came, the decoder was made for 8 bits");
 }
 
-Result<CodeMap> Decoder::finish() {
-  return std::visit([](auto& engine) { return engine.finish(); }, state_->engine);
+Result<CodeMap> Decoder::finish(CodeMap reused) {
+  return std::visit([&](auto& engine) { return engine.finish(std::move(reused)); }, state_->engine);
 }
 
 Result<CodeMap> decode(const PatternSequence& sequence, std::span<const ImageView<const std::uint8_t>> frames,
-                       Options options) {
+                       Options options, CodeMap reused) {
   Result<Plan> planned = plan(sequence);
   if (!planned) {
     return std::move(planned).error();
@@ -84,12 +84,12 @@ Result<CodeMap> decode(const PatternSequence& sequence, std::span<const ImageVie
   const bool banded = by_inverse(planned->x) && by_inverse(planned->y);
   Engine<std::uint8_t> engine(std::move(planned).value(), width, height, 8, options);
   if (banded) {
-    return engine.decode(frames);
+    return engine.decode(frames, std::move(reused));
   }
   for (const ImageView<const std::uint8_t>& frame : frames) {
     RAYSTEER_TRY(engine.push(frame));
   }
-  return engine.finish();
+  return engine.finish(std::move(reused));
 }
 
 }  // namespace raysteer::calib::decode

@@ -58,7 +58,8 @@ class Decoder {
 
   /// Coordinates and masks; the decoder starts anew afterwards and keeps its memory.
   /// Errors: kFrameCount (frames are missing), kNothingDecoded, kFramesBlack, kFramesSaturated.
-  Result<CodeMap> finish();
+  /// The memory of `reused`, a map that is no longer needed, serves again.
+  Result<CodeMap> finish(CodeMap reused = {});
 
  private:
   struct State;
@@ -69,6 +70,6 @@ class Decoder {
 /// All frames of a sequence that are in memory already: the same result as pushing them one by one, faster, because
 /// sums of a few rows stay in the processor's cache.
 Result<CodeMap> decode(const PatternSequence& sequence, std::span<const ImageView<const std::uint8_t>> frames,
-                       Options options = {});
+                       Options options = {}, CodeMap reused = {});
 
 }  // namespace raysteer::calib::decode

@@ -15,7 +15,7 @@ constexpr int kNoiseColumns = 256;
 constexpr int kNoiseRows = 64;
 /// Lines across the stripes from which the borders' places are learnt: each border is crossed by most of them.
 constexpr int kSampledLines = 96;
-constexpr int kColumnsTogether = 16;
+constexpr int kColumnsTogether = 32;
 /// Rows whose sums stay in the second-level cache: 4 x 2048 x 20 bytes.
 constexpr int kBandRows = 4;
 /// Where the frames tell nothing about their noise: a camera of 1.5 DN and 40 electrons a DN.
@@ -298,19 +298,34 @@ void Engine<T>::sample_lines(Axis axis, const BitRole& role, ImageView<const T> 
     return;
   }
   GrayState& state = gray(axis);
-  for (int line = 0; line < lines(axis); ++line) {
-    const int place = line_place(axis, line);
-    if (axis == Axis::kX) {
-      fold(role, p.row(place), q.row(place), width_, state.lines.row(line));
-      continue;
+  const int count = lines(axis);
+  if (axis == Axis::kX) {
+    for (int line = 0; line < count; ++line) {
+      const int row = line_place(axis, line);
+      fold(role, p.row(row), q.row(row), width_, state.lines.row(line));
     }
-    state.line_p.resize(static_cast<std::size_t>(height_));
-    state.line_q.resize(static_cast<std::size_t>(height_));
+    return;
+  }
+  state.line_p.resize(static_cast<std::size_t>(height_) * kColumnsTogether);
+  state.line_q.resize(state.line_p.size());
+  for (int first = 0; first < count; first += kColumnsTogether) {
+    const int together = std::min(kColumnsTogether, count - first);
+    const int column = line_place(axis, first);
     for (int v = 0; v < height_; ++v) {
-      state.line_p[v] = p(place, v);
-      state.line_q[v] = q(place, v);
+      const T* p_row = p.row(v);
+      const T* q_row = q.row(v);
+      for (int k = 0; k < together; ++k) {
+        const int u = std::min(column + k, width_ - 1);
+        state.line_p[static_cast<std::size_t>(k) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(v)] =
+            p_row[u];
+        state.line_q[static_cast<std::size_t>(k) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(v)] =
+            q_row[u];
+      }
     }
-    fold(role, state.line_p.data(), state.line_q.data(), height_, state.lines.row(line));
+    for (int k = 0; k < together; ++k) {
+      const std::ptrdiff_t start = static_cast<std::ptrdiff_t>(k) * height_;
+      fold(role, state.line_p.data() + start, state.line_q.data() + start, height_, state.lines.row(first + k));
+    }
   }
 }
 
@@ -370,25 +385,34 @@ GrayLimits Engine<T>::limits(const AxisPlan& axis) const {
 }
 
 template <class T>
-CodeMap Engine<T>::make_map() const {
-  CodeMap map;
-  map.mask = Image<std::uint8_t>(width_, height_);
+template <class Pixel>
+void Engine<T>::ensure(Image<Pixel>& image, bool wanted) const {
+  if (!wanted) {
+    image = {};
+  } else if (image.width() != width_ || image.height() != height_) {
+    image = Image<Pixel>::uninitialised(width_, height_);
+  }
+}
+
+template <class T>
+CodeMap Engine<T>::make_map(CodeMap reused) const {
+  CodeMap map = std::move(reused);
+  map.diagnostics = {};
+  ensure(map.mask, true);
+  map.mask.fill(0);
   for (const Axis which : {Axis::kX, Axis::kY}) {
     const AxisPlan& axis = plan_.axis(which);
-    if (!axis.used()) {
-      continue;
-    }
-    (which == Axis::kX ? map.code_x : map.code_y) = Image<std::uint16_t>::uninitialised(width_, height_);
-    if (options_.sub_pixel || !axis.phases.empty()) {
-      (which == Axis::kX ? map.x : map.y) = Image<float>::uninitialised(width_, height_);
-      (which == Axis::kX ? map.variance_x : map.variance_y) = Image<float>::uninitialised(width_, height_);
-    }
+    const bool x = which == Axis::kX;
+    const bool placed = axis.used() && (options_.sub_pixel || !axis.phases.empty());
+    ensure(x ? map.code_x : map.code_y, axis.used());
+    ensure(x ? map.x : map.y, placed);
+    ensure(x ? map.variance_x : map.variance_y, placed);
   }
   return map;
 }
 
 template <class T>
-Result<CodeMap> Engine<T>::finish() {
+Result<CodeMap> Engine<T>::finish(CodeMap reused) {
   const int expected = static_cast<int>(plan_.frames.size());
   if (next_ != expected) {
     const int came = next_;
@@ -400,7 +424,7 @@ Result<CodeMap> Engine<T>::finish() {
     sample_phase_noise(phase);
   }
   fit_noise();
-  CodeMap map = make_map();
+  CodeMap map = make_map(std::move(reused));
   Placers placers = make_placers(map);
   const bool references = plan_.white && plan_.black;
   for (auto& [axis, placer] : placers) {
@@ -572,7 +596,7 @@ Result<CodeMap> Engine<T>::complete(CodeMap map, const RowCheck& rows) const {
 }
 
 template <class T>
-Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
+Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames, CodeMap reused) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     RAYSTEER_TRY(check_frame(frames[i], static_cast<int>(i)));
   }
@@ -600,7 +624,7 @@ Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames) {
     sample_lines(pair.axis, role, pair.p, pair.q);
   }
   fit_noise();
-  CodeMap map = make_map();
+  CodeMap map = make_map(std::move(reused));
   Placers placers = make_placers(map);
   RowCheck check(map, resemblance());
   int lag = 1;  // a row is checked against the one below it

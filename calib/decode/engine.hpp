@@ -22,9 +22,9 @@ class Engine {
   Engine(Plan plan, int width, int height, int bits, const Options& options);
 
   Status push(ImageView<const T> frame);
-  Result<CodeMap> finish();
+  Result<CodeMap> finish(CodeMap reused);
   /// All frames at once, a few rows at a time. Only Gray patterns with inverse, white and black.
-  Result<CodeMap> decode(std::span<const ImageView<const T>> frames);
+  Result<CodeMap> decode(std::span<const ImageView<const T>> frames, CodeMap reused);
 
  private:
   struct GrayState {
@@ -58,7 +58,9 @@ class Engine {
   void sample_phase_noise(const PhaseSums& sums);
   GrayLimits limits(const AxisPlan& axis) const;
   BorderTable learn(Axis axis);
-  CodeMap make_map() const;
+  template <class Pixel>
+  void ensure(Image<Pixel>& image, bool wanted) const;
+  CodeMap make_map(CodeMap reused) const;
   void fit_noise();
   Placers make_placers(CodeMap& map);
   T inverse_of(T pattern, int sum) const;

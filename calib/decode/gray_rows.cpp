@@ -177,6 +177,22 @@ template <class T>
   }
 }
 
+/// What the nearest gap shows; returns whether some pixel still has nothing.
+[[gnu::always_inline]] inline bool take_gap(const float* __restrict place, const float* __restrict number,
+                                            const float* __restrict variance, float shift, int count,
+                                            float* __restrict found_place, float* __restrict found_number,
+                                            float* __restrict found_variance) {
+  int open = 0;
+  RAYSTEER_INDEPENDENT
+  for (int i = 0; i < count; ++i) {
+    found_place[i] = place[i] + shift;
+    found_number[i] = number[i];
+    found_variance[i] = variance[i];
+    open |= variance[i] == GapRow::kNone ? 1 : 0;
+  }
+  return open != 0;
+}
+
 /// Takes gap k where nothing was found yet; returns whether some pixel still has nothing.
 [[gnu::always_inline]] inline bool search_gap(const float* __restrict place, const float* __restrict number,
                                               const float* __restrict variance, float shift, int count,
@@ -202,21 +218,23 @@ template <class T>
   for (int k = 0; k < 6; ++k) {
     side[k] = scratch + k * static_cast<std::ptrdiff_t>(count);
   }
-  std::fill(side[1], side[1] + count, 0.0F);
-  std::fill(side[4], side[4] + count, 0.0F);
-  std::fill(side[2], side[2] + count, GapRow::kNone);
-  std::fill(side[5], side[5] + count, GapRow::kNone);
   for (int k = 0; k < search.reach; ++k) {
     const float shift = -1.0F - static_cast<float>(k);
     const GapRow& gap = search.before[k];
-    if (!search_gap(gap.place_b, gap.number_b, gap.variance_b, shift, count, side[0], side[1], side[2])) {
+    const bool open =
+        k == 0 ? take_gap(gap.place_b, gap.number_b, gap.variance_b, shift, count, side[0], side[1], side[2])
+               : search_gap(gap.place_b, gap.number_b, gap.variance_b, shift, count, side[0], side[1], side[2]);
+    if (!open) {
       break;
     }
   }
   for (int k = 0; k < search.reach; ++k) {
-    const float shift = static_cast<float>(k);
+    const auto shift = static_cast<float>(k);
     const GapRow& gap = search.after[k];
-    if (!search_gap(gap.place_a, gap.number_a, gap.variance_a, shift, count, side[3], side[4], side[5])) {
+    const bool open =
+        k == 0 ? take_gap(gap.place_a, gap.number_a, gap.variance_a, shift, count, side[3], side[4], side[5])
+               : search_gap(gap.place_a, gap.number_a, gap.variance_a, shift, count, side[3], side[4], side[5]);
+    if (!open) {
       break;
     }
   }

@@ -65,17 +65,20 @@ struct Counts {
   int valid = 0, saturated = 0, covered = 0;
 };
 
-RAYSTEER_CLONES void mark(const std::uint16_t* __restrict agreeing, int fewest, int count,
+RAYSTEER_CLONES void mark(const std::uint16_t* __restrict agreeing, std::uint16_t fewest, int count,
                           std::uint8_t* __restrict mask, Counts& counts) {
-  int valid = 0, saturated = 0, covered = 0;
+  // A row has at most 32768 pixels: 16 bits hold the counts, and twice as many lanes a register.
+  using Count = std::uint16_t;
+  Count valid = 0, saturated = 0, covered = 0;
   RAYSTEER_INDEPENDENT
   for (int i = 0; i < count; ++i) {
-    const int before = mask[i];
-    const int after = before == 0 && agreeing[i] < fewest ? int{kEdge} : before;
+    const Count before = mask[i];
+    const Count lonely = agreeing[i] < fewest ? Count{kEdge} : Count{0};
+    const Count after = before == 0 ? lonely : before;
     mask[i] = static_cast<std::uint8_t>(after);
-    valid += after == 0 ? 1 : 0;
-    saturated += (after & kSaturated) != 0 ? 1 : 0;
-    covered += (after & (kShadow | kLowModulation | kSaturated)) == 0 ? 1 : 0;
+    valid = static_cast<Count>(valid + (after == 0 ? 1 : 0));
+    saturated = static_cast<Count>(saturated + ((after & kSaturated) != 0 ? 1 : 0));
+    covered = static_cast<Count>(covered + ((after & (kShadow | kLowModulation | kSaturated)) == 0 ? 1 : 0));
   }
   counts = {valid, saturated, covered};
 }
@@ -109,7 +112,7 @@ void RowCheck::row(int v) {
   }
   std::uint8_t* mask = map_.mask.row(v);
   Counts counts;
-  mark(agreeing_.data(), resemblance_.fewest, width, mask, counts);
+  mark(agreeing_.data(), static_cast<std::uint16_t>(resemblance_.fewest), width, mask, counts);
   valid_ += static_cast<std::size_t>(counts.valid);
   saturated_ += static_cast<std::size_t>(counts.saturated);
   covered_ += static_cast<std::size_t>(counts.covered);
