@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "calib/decode/code_map.hpp"
 
@@ -28,6 +29,8 @@ constexpr double kMaxResidual = 1.5;
 constexpr int kSlow = 24;
 /// Displacements below this RMS are not those of a scaled picture (3:2 gives 0.3, 5:4 gives 0.14) and are left.
 constexpr double kLeastDisplacement = 0.1;
+/// ... nor are those that the two halves of the image do not agree upon (correlation; the bag's: 0.9).
+constexpr double kLeastAgreement = 0.7;
 constexpr int kRounds = 12;
 constexpr double kRelaxation = 1.5;
 constexpr int kFewestCrossings = 8;
@@ -37,8 +40,9 @@ constexpr int kScatterShare = 7;
 constexpr int kMaxStep = 6;
 constexpr float kMaxPause = 64;
 
+/// `half`: the first segment of the second half of the lines.
 template <class T>
-std::vector<Segment> find_segments(const GrayStore<T>& lines, int count, const GrayLimits& limits) {
+std::vector<Segment> find_segments(const GrayStore<T>& lines, int count, const GrayLimits& limits, std::size_t& half) {
   const int width = limits.width;
   const auto size = static_cast<std::size_t>(width);
   std::vector<std::uint16_t> code(size);
@@ -52,6 +56,9 @@ std::vector<Segment> find_segments(const GrayStore<T>& lines, int count, const G
                     store[3].data(), store[4].data(), store[5].data()};
   std::vector<Segment> segments;
   for (int line = 0; line < count; ++line) {
+    if (line == count / 2) {
+      half = segments.size();
+    }
     const GraySums<T> sums = lines.row(line);
     std::ranges::fill(mask, std::uint8_t{0});
     classify(sums, static_cast<const T*>(nullptr), static_cast<const T*>(nullptr), limits, code.data(), mask.data(),
@@ -131,66 +138,110 @@ void judge(const std::vector<Segment>& segments, const std::vector<double>& tabl
   }
 }
 
+/// Shifts of all borders from where they should be, stripes, and how many crossings each was learnt from.
+struct Shifts {
+  std::vector<double> shift;
+  std::vector<int> seen;
+
+  bool knows(std::size_t n) const { return seen[n] >= kFewestCrossings; }
+};
+
+std::vector<double> even_table(std::size_t borders) {
+  std::vector<double> table(borders);
+  std::iota(table.begin(), table.end(), 0.0);
+  return table;
+}
+
+/// Without what changes slowly from border to border.
+void keep_fast_part(Shifts& shifts) {
+  const std::vector<double> all = shifts.shift;
+  const auto borders = static_cast<std::ptrdiff_t>(all.size());
+  for (std::ptrdiff_t n = 0; n < borders; ++n) {
+    double sum = 0;
+    int number = 0;
+    for (std::ptrdiff_t at = std::max(std::ptrdiff_t{0}, n - kSlow / 2); at <= std::min(borders - 1, n + kSlow / 2);
+         ++at) {
+      if (shifts.seen[static_cast<std::size_t>(at)] > 0) {
+        sum += all[static_cast<std::size_t>(at)];
+        ++number;
+      }
+    }
+    const auto here = static_cast<std::size_t>(n);
+    shifts.shift[here] = shifts.knows(here) && number > kSlow / 2 ? all[here] - sum / number : 0;
+  }
+}
+
+double rms(const Shifts& shifts) {
+  double sum = 0, number = 0;
+  for (std::size_t n = 0; n < shifts.shift.size(); ++n) {
+    if (shifts.knows(n)) {
+      sum += shifts.shift[n] * shifts.shift[n];
+      number += 1;
+    }
+  }
+  return number > 0 ? std::sqrt(sum / number) : 0;
+}
+
+/// Moves every border towards where its neighbours say, again and again.
+Shifts learn_shifts(const std::vector<Segment>& segments, std::size_t borders) {
+  Shifts shifts{std::vector<double>(borders), std::vector<int>(borders)};
+  std::vector<double> table = even_table(borders);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> sum(borders);
+    std::ranges::fill(shifts.seen, 0);
+    judge(segments, table, [&](const Crossing& crossing, double residual, double) {
+      sum[static_cast<std::size_t>(crossing.border)] += residual;
+      ++shifts.seen[static_cast<std::size_t>(crossing.border)];
+    });
+    for (std::size_t n = 0; n < borders; ++n) {
+      if (shifts.knows(n)) {
+        shifts.shift[n] += kRelaxation * sum[n] / shifts.seen[n];
+      }
+    }
+    keep_fast_part(shifts);
+    for (std::size_t n = 0; n < borders; ++n) {
+      table[n] = static_cast<double>(n) + shifts.shift[n];
+    }
+    if (round == 0 && rms(shifts) < kLeastDisplacement / 2) {
+      break;
+    }
+  }
+  return shifts;
+}
+
+/// Do two parts of the image tell the same? The panel is one, the surface is not.
+double correlation(const Shifts& a, const Shifts& b) {
+  double aa = 0, ab = 0, bb = 0;
+  for (std::size_t n = 0; n < a.shift.size(); ++n) {
+    if (a.knows(n) && b.knows(n)) {
+      aa += a.shift[n] * a.shift[n];
+      ab += a.shift[n] * b.shift[n];
+      bb += b.shift[n] * b.shift[n];
+    }
+  }
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
 }  // namespace
 
 template <class T>
 BorderTable learn_borders(const GrayStore<T>& lines, int count, const GrayLimits& limits) {
-  const std::vector<Segment> segments = find_segments(lines, count, limits);
+  std::size_t half = 0;
+  const std::vector<Segment> segments = find_segments(lines, count, limits, half);
   const std::size_t borders = static_cast<std::size_t>(limits.codes) + 2;
-  std::vector<double> table(borders);
-  for (std::size_t n = 0; n < borders; ++n) {
-    table[n] = static_cast<double>(n);
-  }
+  const Shifts shifts = learn_shifts(segments, borders);
   BorderTable result;
-  const auto displacement = [&](const std::vector<int>& seen) {
-    double sum = 0;
-    double number = 0;
-    for (std::size_t n = 0; n < borders; ++n) {
-      if (seen[n] >= kFewestCrossings) {
-        sum += (table[n] - static_cast<double>(n)) * (table[n] - static_cast<double>(n));
-        number += 1;
+  std::vector<double> table = even_table(borders);
+  if (rms(shifts) >= kLeastDisplacement) {
+    const auto middle_segment = segments.begin() + static_cast<std::ptrdiff_t>(half);
+    const Shifts first = learn_shifts({segments.begin(), middle_segment}, borders);
+    const Shifts second = learn_shifts({middle_segment, segments.end()}, borders);
+    if (correlation(first, second) >= kLeastAgreement) {
+      result.displacement = static_cast<float>(rms(shifts));
+      for (std::size_t n = 0; n < borders; ++n) {
+        table[n] += shifts.shift[n];
       }
-    }
-    return number > 0 ? std::sqrt(sum / number) : 0;
-  };
-  bool displaced = false;
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<double> sum(borders);
-    std::vector<int> seen(borders);
-    judge(segments, table, [&](const Crossing& crossing, double residual, double) {
-      sum[static_cast<std::size_t>(crossing.border)] += residual;
-      ++seen[static_cast<std::size_t>(crossing.border)];
-    });
-    std::vector<double> moved(borders);
-    for (std::size_t n = 0; n < borders; ++n) {
-      const double before = table[n] - static_cast<double>(n);
-      moved[n] = seen[n] >= kFewestCrossings ? before + kRelaxation * sum[n] / seen[n] : before;
-    }
-    // Keep what changes from border to border.
-    for (std::size_t n = 0; n < borders; ++n) {
-      double mean = 0;
-      int number = 0;
-      for (int k = -kSlow / 2; k <= kSlow / 2; ++k) {
-        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(n) + k;
-        if (at >= 0 && at < static_cast<std::ptrdiff_t>(borders) && seen[static_cast<std::size_t>(at)] > 0) {
-          mean += moved[static_cast<std::size_t>(at)];
-          ++number;
-        }
-      }
-      const bool known = seen[n] >= kFewestCrossings && number > kSlow / 2;
-      table[n] = static_cast<double>(n) + (known ? moved[n] - mean / number : 0);
-    }
-    result.displacement = static_cast<float>(displacement(seen));
-    displaced = result.displacement >= kLeastDisplacement;
-    if (round == 0 && result.displacement < kLeastDisplacement / 2) {
-      break;
-    }
-  }
-  if (displaced) {
-    result.place.assign(table.begin(), table.end());
-  } else {
-    for (std::size_t n = 0; n < borders; ++n) {
-      table[n] = static_cast<double>(n);
+      result.place.assign(table.begin(), table.end());
     }
   }
   // Scatter beyond noise, by medians: robust against the crossings of edges.

@@ -19,7 +19,7 @@ struct BorderTable {
   /// How far a single crossing scatters about its border beyond the frames' noise, stripes^2: texture of the surface,
   /// interpolation between pixels.
   float excess_variance = 0;
-  /// RMS of place[n] - n over the borders seen, stripes.
+  /// RMS of place[n] - n over the borders seen, stripes; 0 where borders are where they should be.
   float displacement = 0;
 };
 

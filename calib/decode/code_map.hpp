@@ -31,8 +31,8 @@ struct Diagnostics {
   /// Heterodyne axes: median distance of the period's order from an integer, in periods; NaN without.
   double order_residual_x = std::numeric_limits<double>::quiet_NaN();
   double order_residual_y = std::numeric_limits<double>::quiet_NaN();
-  /// Gray axes: RMS displacement of stripe borders from where the sequence puts them, in stripes. From 0.1 on the
-  /// picture was scaled on its way to the panel, and coordinates are measured with the borders' true places.
+  /// Gray axes: RMS displacement of stripe borders from where the sequence puts them, in stripes; 0 unless the picture
+  /// was scaled on its way to the panel. Coordinates are then measured with the borders' true places.
   double border_displacement_x = 0;
   double border_displacement_y = 0;
   /// Share of pixels with enough modulation and no saturation, before order and neighbours are asked.
