@@ -72,6 +72,25 @@ void draw_bar(exchange::Sheet& sheet, double x, double y, double length) {
   }
 }
 
+// Paper as grey, blurred by (1 2 1)/4 both ways: a lens does, and sub-pixel refinement counts on it.
+Image<std::uint8_t> softened(const Image<float>& ink) {
+  Image<std::uint8_t> grey(ink.width(), ink.height());
+  grey.fill(255);
+  for (int y = 1; y + 1 < ink.height(); ++y) {
+    for (int x = 1; x + 1 < ink.width(); ++x) {
+      float sum = 0;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto weight = static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)));
+          sum += weight * std::min(1.0F, ink(x + dx, y + dy));
+        }
+      }
+      grey(x, y) = static_cast<std::uint8_t>(std::lround(255 * (1 - sum / 16)));
+    }
+  }
+  return grey;
+}
+
 }  // namespace
 
 Result<Paper> paper(const std::string& name) {
@@ -129,7 +148,9 @@ Result<TargetSheet> lay_out(const TargetSpec& target, const Paper& paper) {
 Status check_sheet(const TargetSpec& target, const TargetSheet& laid) {
   // A smallest cell of at least four pixels is found by every detector; more would only take time.
   const double cell_mm = 1000 * (target.kind == TargetKind::kCharuco ? target.marker_m / 9 : target.square_m / 5);
-  const double per_mm = std::clamp(4 / cell_mm, 1.0, 20.0);
+  // The odd factor keeps edges off the pixel grid, as in a camera: a rough place that is exactly right already looks
+  // to the detector like one that could not be refined.
+  const double per_mm = 1.0372 * std::clamp(4 / cell_mm, 1.0, 20.0);
   const int width = static_cast<int>(std::lround(laid.sheet.width_mm * per_mm));
   const int height = static_cast<int>(std::lround(laid.sheet.height_mm * per_mm));
   Image<float> ink(width, height);
@@ -145,12 +166,7 @@ Status check_sheet(const TargetSpec& target, const TargetSheet& laid) {
       }
     }
   }
-  Image<std::uint8_t> frame(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      frame(x, y) = static_cast<std::uint8_t>(std::lround(255 * (1 - std::min(1.0F, ink(x, y)))));
-    }
-  }
+  const Image<std::uint8_t> frame = softened(ink);
   const Result<calib::target::Detection> found = calib::target::detect(target, frame.view());
   if (!found) {
     return fail(RCode::kInternal, "the sheet does not show the target: " + found.error().message());
