@@ -10,6 +10,26 @@ add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/changelog.gz
 add_custom_target(changelog ALL DEPENDS ${CMAKE_BINARY_DIR}/changelog.gz)
 install(FILES ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+# Manual page, completions and JSON schemas come from the program's own command tree. Sanitized programs are not
+# packaged and too slow to run in every build.
+if(NOT RAYSTEER_SANITIZE)
+  set(tree ${CMAKE_BINARY_DIR}/tree)
+  add_custom_command(OUTPUT ${tree}/raysteer.1.gz ${tree}/raysteer ${tree}/_raysteer ${tree}/raysteer.fish
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${tree}
+    COMMAND $<TARGET_FILE:raysteer> help --man > ${tree}/raysteer.1
+    COMMAND gzip -9nf ${tree}/raysteer.1
+    COMMAND $<TARGET_FILE:raysteer> completion bash > ${tree}/raysteer
+    COMMAND $<TARGET_FILE:raysteer> completion zsh > ${tree}/_raysteer
+    COMMAND $<TARGET_FILE:raysteer> completion fish > ${tree}/raysteer.fish
+    DEPENDS raysteer VERBATIM)
+  add_custom_target(tree ALL DEPENDS ${tree}/raysteer.1.gz)
+  install(FILES ${tree}/raysteer.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${tree}/raysteer DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${tree}/_raysteer DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+  install(FILES ${tree}/raysteer.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  install(DIRECTORY docs/json/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raysteer/schema)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME raysteer)
 set(CPACK_PACKAGE_VENDOR "The Raysteer developers")

@@ -33,7 +33,12 @@ _raysteer() {
       _describe raysteer words_and_meanings ;;
   esac
 }
-compdef _raysteer raysteer
+# Loaded as a file, zsh runs this once for the first completion; read by eval, it has to be made known.
+if [[ "$funcstack[1]" = "_raysteer" ]]; then
+  _raysteer "$@"
+else
+  compdef _raysteer raysteer
+fi
 )sh";
 
 constexpr const char* kFish = R"sh(# fish completion of raysteer; load with: raysteer completion fish | source
