@@ -185,10 +185,14 @@ double corner_weight(const Measurements& measurements, const CornerMeasurement& 
 }
 
 double pixel_weight(const Measurements& measurements, const PixelMeasurement& pixel) {
-  return 1 / std::hypot(pixel.sigma_px, measurements.pixel_floor_px);
+  return 1 / pixel_sigma(measurements, pixel);
 }
 
 }  // namespace
+
+double pixel_sigma(const Measurements& measurements, const PixelMeasurement& pixel) {
+  return std::max(kSigmaFloor, measurements.pixel_scale * pixel.sigma_px);
+}
 
 double sag_sigma(const TargetSpec& target) {
   const double length = target.square_m * std::max(target.corner_columns(), target.corner_rows());

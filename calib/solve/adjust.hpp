@@ -37,6 +37,11 @@ struct Covariance {
 };
 Result<Covariance> covariance(const Measurements& measurements, const State& state);
 
+/// px per coordinate below which no error is believed to be (algorithms 1.3).
+constexpr double kSigmaFloor = 0.05;
+/// What a decoded pixel is weighted by, px per coordinate.
+double pixel_sigma(const Measurements& measurements, const PixelMeasurement& pixel);
+
 // Weak knowledge that keeps what views leave open in bounds.
 /// Sag of a printed board: 0.3 mm over 0.8 m is common (algorithms 1.3); ten times that is a bent one.
 double sag_sigma(const TargetSpec& target);

@@ -71,13 +71,15 @@ struct Solution {
 
   double rms_px = 0;              ///< kept corners of all devices, each corner of equal weight, two-dimensional
   double all_corners_rms_px = 0;  ///< the same over every corner of the views used, kept or not
-  double whitened_rms = 0;        ///< 1 when the noise is what the solve took it to be
+  /// RMS of a plain fit to every corner of the views used, none left out, all of equal weight: what other tools report
+  double plain_fit_rms_px = 0;
+  double whitened_rms = 0;  ///< 1 when the noise is what the solve took it to be
   int iterations = 0;
 
   // With a projector:
   std::vector<PixelResidual> pixels;
-  double pixel_rms_px = 0;    ///< single decoded pixels, kept ones, two-dimensional
-  double pixel_floor_px = 0;  ///< model error of single pixels beyond their own sigma, per coordinate
+  double pixel_rms_px = 0;  ///< single decoded pixels, kept ones, two-dimensional
+  double pixel_scale = 1;   ///< they miss by this many times what the decoder predicted
 };
 
 }  // namespace raysteer::calib::solve

@@ -16,7 +16,6 @@
 namespace raysteer::calib::solve {
 namespace {
 
-constexpr double kSigmaFloor = 0.05;                       // px (algorithms 1.3)
 constexpr double kGate = 4;                                // sigma (algorithms 1.3)
 constexpr double kLeastTilt = 5 * 3.14159265358979 / 180;  // radians between the most different normals
 
@@ -112,7 +111,8 @@ void measure_robustly(const State& state, Measurements& all) {
 
 // Sigma from the squares of what was kept, with the degrees of freedom the unknowns took.
 void measure_plainly(const State& state, const Measurements& kept, Measurements& all) {
-  const double numbers = 2.0 * static_cast<double>(kept.corners.size() + kept.pixels.size());
+  const Measurements adjusted = without_double_counting(kept);
+  const double numbers = 2.0 * static_cast<double>(adjusted.corners.size() + adjusted.pixels.size());
   const double freedom = std::max(0.1, 1 - unknowns(state, kept) / numbers);
   for (std::size_t d = 0; d < state.devices.size(); ++d) {
     double squares = 0;
@@ -127,21 +127,37 @@ void measure_plainly(const State& state, const Measurements& kept, Measurements&
       all.corner_sigma_px[d] = std::max(kSigmaFloor, std::sqrt(squares / count / freedom));
     }
   }
+  double ratios = 0;
+  for (const PixelMeasurement& pixel : kept.pixels) {
+    ratios += error_of(kept, pixel, state).squaredNorm() / (pixel.sigma_px * pixel.sigma_px);
+  }
+  if (!kept.pixels.empty()) {
+    all.pixel_scale = std::sqrt(ratios / (2 * static_cast<double>(kept.pixels.size())) / freedom);
+  }
 }
 
-// Pixels carry their own sigma; what they miss beyond it is the model's and the board's, the same for all.
-void measure_pixel_floor(const State& state, Measurements& all) {
-  if (all.pixels.empty()) {
-    return;
+// Every corner of the views used, all of equal weight and none left out: the number that other tools give.
+double plain_fit(const Measurements& all, State state) {
+  Measurements corners = all;
+  corners.pixels.clear();
+  std::ranges::fill(corners.corner_sigma_px, 1);
+  if (!adjust(corners, {}, state)) {
+    return std::numeric_limits<double>::quiet_NaN();
   }
-  std::vector<double> lengths;
-  std::vector<double> variances;
+  double squares = 0;
+  for (const CornerMeasurement& corner : corners.corners) {
+    squares += error_of(corners, corner, state).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(corners.corners.size()));
+}
+
+// Pixels carry the sigma they were decoded with; how far they really miss is one factor for all.
+void measure_pixel_scale(const State& state, Measurements& all) {
+  std::vector<double> ratios;
   for (const PixelMeasurement& pixel : all.pixels) {
-    lengths.push_back(error_of(all, pixel, state).norm());
-    variances.push_back(pixel.sigma_px * pixel.sigma_px);
+    ratios.push_back(error_of(all, pixel, state).norm() / pixel.sigma_px);
   }
-  const double sigma = robust_sigma(lengths);
-  all.pixel_floor_px = std::sqrt(std::max(kSigmaFloor * kSigmaFloor, sigma * sigma - median_of(variances)));
+  all.pixel_scale = ratios.empty() ? 1 : robust_sigma(ratios);
 }
 
 Flags within_gate(const Measurements& all, const State& state) {
@@ -151,8 +167,7 @@ Flags within_gate(const Measurements& all, const State& state) {
                             kGate * all.corner_sigma_px[static_cast<std::size_t>(corner.device)]);
   }
   for (const PixelMeasurement& pixel : all.pixels) {
-    flags.pixels.push_back(error_of(all, pixel, state).norm() <=
-                           kGate * std::hypot(pixel.sigma_px, all.pixel_floor_px));
+    flags.pixels.push_back(error_of(all, pixel, state).norm() <= kGate * pixel_sigma(all, pixel));
   }
   return flags;
 }
@@ -185,7 +200,8 @@ void fill_residuals(const Observations& observations, const Measurements& all, c
   std::vector<std::vector<int>> counts(observations.views.size(), std::vector<int>(state.devices.size(), 0));
   double all_squares = 0;
   double every_squares = 0;
-  double whitened = 0;
+  double whitened = 0;  // of what was adjusted
+  int whitened_count = 0;
   int all_count = 0;
   for (std::size_t d = 0; d < state.devices.size(); ++d) {
     DeviceFit& fit = solution.devices[d];
@@ -205,7 +221,10 @@ void fill_residuals(const Observations& observations, const Measurements& all, c
       if (flags.corners[i]) {
         ++fit.corners_kept;
         sum += error.squaredNorm();
-        whitened += error.squaredNorm() / (fit.sigma_px * fit.sigma_px);
+        if (all.pixels.empty() || state.devices[d].kind == model::DeviceKind::kCamera) {
+          whitened += error.squaredNorm() / (fit.sigma_px * fit.sigma_px);
+          whitened_count += 2;
+        }
         squares[static_cast<std::size_t>(corner.view)][d] += error.squaredNorm();
         ++counts[static_cast<std::size_t>(corner.view)][d];
       }
@@ -227,13 +246,14 @@ void fill_residuals(const Observations& observations, const Measurements& all, c
         {.view = pixel.view, .q = pixel.q, .x = pixel.x, .error = error, .kept = flags.pixels[i]});
     if (flags.pixels[i]) {
       pixel_squares += error.squaredNorm();
-      const double sigma = std::hypot(pixel.sigma_px, all.pixel_floor_px);
+      const double sigma = pixel_sigma(all, pixel);
       whitened += error.squaredNorm() / (sigma * sigma);
+      whitened_count += 2;
       ++pixel_count;
     }
   }
   solution.pixel_rms_px = pixel_count > 0 ? std::sqrt(pixel_squares / pixel_count) : 0;
-  solution.whitened_rms = std::sqrt(whitened / std::max(1, 2 * (all_count + pixel_count)));
+  solution.whitened_rms = std::sqrt(whitened / std::max(1, whitened_count));
 
   const Eigen::Vector3d middle = target::corner_position(observations.target, observations.target.corners() - 1) / 2;
   for (std::size_t v = 0; v < observations.views.size(); ++v) {
@@ -310,12 +330,12 @@ Result<Solution> solve(const Observations& given, const SolveOptions& options) {
   }
   Measurements all = collect(observations, used);
   measure_robustly(state, all);
-  measure_pixel_floor(state, all);
+  measure_pixel_scale(state, all);
   if (auto report = adjust(without_double_counting(all), {.robust = true}, state); !report) {
     return report.error();
   }
   measure_robustly(state, all);
-  measure_pixel_floor(state, all);
+  measure_pixel_scale(state, all);
   Flags flags = within_gate(all, state);
   // Twice: the sigma of the kept ones is a better gate than the first, robust one.
   for (int round = 0; round < 2; ++round) {
@@ -326,7 +346,6 @@ Result<Solution> solve(const Observations& given, const SolveOptions& options) {
     }
     solution.iterations = report->iterations;
     measure_plainly(state, kept, all);
-    measure_pixel_floor(state, all);
     if (round == 0) {
       flags = within_gate(all, state);
     }
@@ -348,7 +367,8 @@ Result<Solution> solve(const Observations& given, const SolveOptions& options) {
   solution.rig.parameters = parameter_names(state.devices);
   solution.rig.covariance = sigma->shared.topLeftCorner(shared - 2, shared - 2);
   solution.sag_m = state.sag;
-  solution.pixel_floor_px = all.pixel_floor_px;
+  solution.pixel_scale = all.pixel_scale;
+  solution.plain_fit_rms_px = plain_fit(all, state);
   solution.sag_sigma_m = sigma->shared.diagonal().tail<2>().cwiseSqrt();
   fill_residuals(observations, all, flags, state, solution);
   tell("adjusting", 1);
@@ -400,7 +420,7 @@ Measurements kept_measurements(const Observations& observations, const Solution&
       ++next;
     }
   }
-  kept.pixel_floor_px = solution.pixel_floor_px;
+  kept.pixel_scale = solution.pixel_scale;
   return without_double_counting(std::move(kept));
 }
 

@@ -42,8 +42,8 @@ struct Measurements {
   std::vector<PixelMeasurement> pixels;
   /// Per device, px per coordinate: corners are weighted by it.
   std::vector<double> corner_sigma_px;
-  /// Model error of single pixels on the panel, px per coordinate, added to what was decoded (in squares).
-  double pixel_floor_px = 0;
+  /// Single pixels miss the model by this many times what the decoder predicted.
+  double pixel_scale = 1;
 };
 
 /// A point of the target's surface, with derivatives by the two sags.

@@ -69,6 +69,9 @@ void add_details(Json& json, const TargetSpec& target, const solve::Solution& so
   }
   json["whitened_rms"] = solution.whitened_rms;
   json["all_corners_rms_px"] = solution.all_corners_rms_px;
+  if (std::isfinite(solution.plain_fit_rms_px)) {
+    json["plain_fit_rms_px"] = solution.plain_fit_rms_px;
+  }
   std::size_t camera = 0;
   for (std::size_t d = 0; d < solution.devices.size(); ++d) {
     const bool projector = solution.rig.devices[d].kind == calib::model::DeviceKind::kProjector;
@@ -120,9 +123,10 @@ void print(Context& context, const TargetSpec& target, const solve::Solution& so
   const assess::CrossValidation& cross = assessment.cross_validation;
   context.print(fmt::format("held-out corners {:.3f} px RMS, {:.3f} px (95 %), {} folds\n", cross.rms_px, cross.p95_px,
                             cross.folds));
+  context.print(
+      fmt::format("every corner     {:.3f} px RMS, those left out included; {:.3f} px in a plain fit to all\n",
+                  solution.all_corners_rms_px, solution.plain_fit_rms_px));
   if (!solution.pixels.empty()) {
-    context.print(
-        fmt::format("every corner     {:.3f} px RMS, those left out included\n", solution.all_corners_rms_px));
     context.print(fmt::format("single pixels    {:.3f} px RMS on the panel; poses left out {:.3f} px\n",
                               solution.pixel_rms_px, cross.leave_one_out_px));
   }
