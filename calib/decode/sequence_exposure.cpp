@@ -12,17 +12,33 @@ namespace {
 
 // A set with less of the view lit than this is taken for one that the projector does not reach.
 constexpr double kLeastLit = 0.004;
+// A frame with less of the lit places bright shows no light.
+constexpr double kDark = 0.02;
+// Stripes too fine for the camera come out as half of the range; this is well below.
+constexpr float kGrey = 0.25F;
 
-// The other frame of the same bit; -1: none.
-int partner_of(const SampledSet& set, int frame) {
-  for (const GrayBlock& gray : set.gray) {
-    for (const BitFrames& bit : gray.bits) {
-      if (bit.inverse >= 0 && (bit.pattern == frame || bit.inverse == frame)) {
-        return bit.pattern == frame ? bit.inverse : bit.pattern;
+bool striped(double bright_share) { return bright_share > 1 - kNearlyAll && bright_share < kNearlyAll; }
+
+// Gray frames that are dark though they must show light: where the inverse is not bright either; and, since a bit
+// reads 1 at the edges of the next coarser one, where that one shows edges (it does too when it lost its own light).
+void find_dark_bits(const SampledSet& set, const GrayBlock& gray, std::vector<int>& dark) {
+  bool coarser_striped = false;
+  for (auto bit = gray.bits.rbegin(); bit != gray.bits.rend(); ++bit) {
+    const double bright = set.bright_share(bit->pattern);
+    if (bit->inverse >= 0) {
+      const double inverse = set.bright_share(bit->inverse);
+      if (bright < kDark && inverse < kNearlyAll) {
+        dark.push_back(bit->pattern);
       }
+      if (inverse < kDark && bright < kNearlyAll) {
+        dark.push_back(bit->inverse);
+      }
+    } else if (coarser_striped && set.bright_share(bit->pattern, kGrey) < kDark) {
+      dark.push_back(bit->pattern);
+    } else {
+      coarser_striped = striped(bright);
     }
   }
-  return -1;
 }
 
 }  // namespace
@@ -88,17 +104,14 @@ void judge_single_frames(const SampledSet& set, Findings& findings) {
       continue;
     }
     const double bright = set.bright_share(k);
-    if (kind == PatternKind::kWhite && bright < 1 - kNearlyAll) {
+    if ((kind == PatternKind::kWhite && bright < 1 - kNearlyAll) || (kind == PatternKind::kPhase && bright < kDark)) {
       dark.push_back(k);
-    } else if (kind == PatternKind::kPhase && bright < 0.02) {
-      dark.push_back(k);
-    } else if (kind == PatternKind::kGray && bright < 0.02) {
-      const int partner = partner_of(set, k);
-      if (partner >= 0 && set.bright_share(partner) < kNearlyAll) {
-        dark.push_back(k);
-      }
     }
   }
+  for (const GrayBlock& gray : set.gray) {
+    find_dark_bits(set, gray, dark);
+  }
+  std::ranges::sort(dark);
   if (!clipped.empty()) {
     findings.fault(RCode::kFramesSaturated, list_of(clipped) + " saturate all over the view", clipped.front());
   }

@@ -86,51 +86,107 @@ std::vector<std::uint8_t> usable_samples(const SampledSet& set, const Findings& 
   return usable;
 }
 
-}  // namespace
+// By how much something had moved when a frame was taken.
+struct Look {
+  int frame = 0;
+  Shift shift;
+};
 
-void judge_movement(const SampledSet& set, Findings& findings) {
+// Sums of groups against the first sum.
+std::vector<Look> look_at_sums(const SampledSet& set, const Findings& findings,
+                               const std::vector<std::uint8_t>& usable) {
   const std::vector<Group> all = groups(set, findings);
-  if (all.size() < 2 || set.side < kTileSide) {
-    return;
+  std::vector<Look> looks;
+  if (all.size() < 2) {
+    return looks;
   }
-  const ShiftMeter meter(sum_of(set, all.front()), usable_samples(set, findings));
-  std::vector<Shift> shifts{Shift{.known = true}};
+  const ShiftMeter meter(sum_of(set, all.front()), usable);
+  looks.push_back({all.front().first(), {.known = true}});
   for (std::size_t n = 1; n < all.size(); ++n) {
-    shifts.push_back(meter.measure(sum_of(set, all[n])));
+    looks.push_back({all[n].first(), meter.measure(sum_of(set, all[n]))});
   }
+  return looks;
+}
+
+// Gray frames without inverses against the white frame, each where it is bright.
+std::vector<Look> look_at_bright_places(const SampledSet& set, const Findings& findings,
+                                        const std::vector<std::uint8_t>& usable) {
+  std::vector<Look> looks;
+  if (set.white.empty() || findings.is_disputed(set.white.front())) {
+    return looks;
+  }
+  const int white = set.white.front();
+  const Tiles reference = sum_of(set, {{white}});
+  for (const GrayBlock& gray : set.gray) {
+    for (const BitFrames& bit : gray.bits) {
+      if (bit.inverse >= 0 || findings.is_disputed(bit.pattern)) {
+        continue;
+      }
+      std::vector<std::uint8_t> bright = usable;
+      for (std::size_t i = 0; i < set.count(); ++i) {
+        bright[i] = set.at(bit.pattern, i) > set.low[i] + (0.5F + kDecided) * set.range(i) ? bright[i] : 0;
+      }
+      looks.push_back({bit.pattern, ShiftMeter(reference, bright).measure(sum_of(set, {{bit.pattern}}))});
+    }
+  }
+  if (!looks.empty()) {
+    looks.push_back({white, {.known = true}});
+  }
+  std::ranges::sort(looks, {}, &Look::frame);
+  return looks;
+}
+
+// Says the worst of `looks`, which are in the order of frames.
+void tell(const std::vector<Look>& looks, Findings& findings) {
   std::size_t farthest = 0;
   std::size_t most_changed = 0;
   std::size_t step_at = 0;
   double step = 0;
-  for (std::size_t n = 0; n < shifts.size(); ++n) {
-    if (shifts[n].known && shifts[n].length() > shifts[farthest].length()) {
+  for (std::size_t n = 0; n < looks.size(); ++n) {
+    const Shift& shift = looks[n].shift;
+    if (shift.known && (!looks[farthest].shift.known || shift.length() > looks[farthest].shift.length())) {
       farthest = n;
     }
-    if (shifts[n].changed > shifts[most_changed].changed) {
+    if (shift.changed > looks[most_changed].shift.changed) {
       most_changed = n;
     }
-    if (n > 0 && shifts[n].known && shifts[n - 1].known) {
-      const double here = std::hypot(shifts[n].x - shifts[n - 1].x, shifts[n].y - shifts[n - 1].y);
+    if (n > 0 && shift.known && looks[n - 1].shift.known) {
+      const Shift& before = looks[n - 1].shift;
+      const double here = std::hypot(shift.x - before.x, shift.y - before.y);
       step_at = here > step ? n : step_at;
       step = std::max(step, here);
     }
   }
-  findings.report.largest_shift_px = shifts[farthest].length();
-  if (findings.report.largest_shift_px > kMostShift) {
-    findings.fault(RCode::kSceneMoved,
-                   "by " + fixed(findings.report.largest_shift_px) + " px, most of it at frame " +
-                       std::to_string(all[step_at].first()),
-                   all[step_at].first());
-  } else if (shifts[most_changed].changed > kMostChanged) {
-    findings.fault(RCode::kSceneMoved,
-                   percent(shifts[most_changed].changed) + " of the view changed by frame " +
-                       std::to_string(all[most_changed].first()),
-                   all[most_changed].first());
-  } else if (findings.report.largest_shift_px > kWarnShift) {
-    findings.warn(RCode::kSceneMoved,
-                  "slowly, by " + fixed(findings.report.largest_shift_px) + " px between frames 0 and " +
-                      std::to_string(all[farthest].first()),
-                  all[farthest].first());
+  const double length = looks[farthest].shift.length();
+  const double changed = looks[most_changed].shift.changed;
+  findings.report.largest_shift_px = std::max(findings.report.largest_shift_px, length);
+  if (length > kMostShift) {
+    const int frame = looks[step_at].frame;
+    findings.fault(RCode::kSceneMoved, "by " + fixed(length) + " px, most of it at frame " + std::to_string(frame),
+                   frame);
+  } else if (changed > kMostChanged) {
+    const int frame = looks[most_changed].frame;
+    findings.fault(RCode::kSceneMoved, percent(changed) + " of the view changed by frame " + std::to_string(frame),
+                   frame);
+  } else if (length > kWarnShift) {
+    const int frame = looks[farthest].frame;
+    findings.warn(RCode::kSceneMoved, "slowly, by " + fixed(length) + " px until frame " + std::to_string(frame),
+                  frame);
+  }
+}
+
+}  // namespace
+
+void judge_movement(const SampledSet& set, Findings& findings) {
+  if (set.side < kTileSide) {
+    return;
+  }
+  const std::vector<std::uint8_t> usable = usable_samples(set, findings);
+  for (const auto& look : {look_at_sums, look_at_bright_places}) {
+    const std::vector<Look> looks = look(set, findings, usable);
+    if (!looks.empty()) {
+      tell(looks, findings);
+    }
   }
 }
 

@@ -101,10 +101,10 @@ void SampledSet::find_range() {
   }
 }
 
-double SampledSet::bright_share(int frame) const {
+double SampledSet::bright_share(int frame, float part) const {
   std::size_t bright = 0;
   for (const std::size_t i : lit) {
-    bright += at(frame, i) > 0.5F * (low[i] + high[i]) ? 1 : 0;
+    bright += at(frame, i) > low[i] + part * range(i) ? 1 : 0;
   }
   return static_cast<double>(bright) / static_cast<double>(lit.size());
 }

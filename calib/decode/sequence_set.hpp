@@ -49,8 +49,8 @@ class SampledSet {
   float at(int frame, std::size_t i) const { return level_ * samples_[static_cast<std::size_t>(frame)][i]; }
   PatternKind kind(int frame) const { return patterns_[static_cast<std::size_t>(frame)].block.kind; }
   float range(std::size_t i) const { return high[i] - low[i]; }
-  /// Share of the lit samples of a frame that lie above the middle of their own range.
-  double bright_share(int frame) const;
+  /// Share of the lit samples of a frame that lie above `part` of their own range.
+  double bright_share(int frame, float part = 0.5F) const;
 
   const PatternSequence& sequence;
   const int side;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +19,15 @@ namespace {
 
 using calib::decode::SequenceCheck;
 using calib::decode::SequenceReport;
-using Frames = std::vector<Image<std::uint8_t>>;
+// Frames are shared, so that a corrupted set costs no more than the frames that it changes.
+using Frame = std::shared_ptr<const Image<std::uint8_t>>;
+using Frames = std::vector<Frame>;
+
+Frame filled(const Frame& like, std::uint8_t level) {
+  Image<std::uint8_t> image(like->width(), like->height());
+  image.fill(level);
+  return std::make_shared<const Image<std::uint8_t>>(std::move(image));
+}
 
 class CapturedSession : public testing::Test {
  protected:
@@ -36,25 +45,19 @@ class CapturedSession : public testing::Test {
   }
 
   static Frames load(const Session& session, int camera, int look) {
-    Frames frames(static_cast<std::size_t>(session.frames_per_look()));
+    Frames frames;
     for (int index = 0; index < session.frames_per_look(); ++index) {
-      EXPECT_TRUE(session.load({camera, look, index}, frames[static_cast<std::size_t>(index)]));
+      Image<std::uint8_t> image;
+      EXPECT_TRUE(session.load({camera, look, index}, image));
+      frames.push_back(std::make_shared<const Image<std::uint8_t>>(std::move(image)));
     }
     return frames;
-  }
-
-  static Frames copy(const Frames& frames) {
-    Frames copies;
-    for (const auto& frame : frames) {
-      copies.push_back(frame.clone());
-    }
-    return copies;
   }
 
   static SequenceReport judge(const Session& session, const Frames& frames) {
     SequenceCheck check(session.manifest().sequence, session.width(0), session.height(0), 8);
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      check.add(static_cast<int>(k), frames[k].view());
+      check.add(static_cast<int>(k), frames[k]->view());
     }
     return check.report();
   }
@@ -71,10 +74,12 @@ class CapturedSession : public testing::Test {
 // Everything moves right by `px` from frame `first` on.
 void nudge(Frames& frames, std::size_t first, int px) {
   for (std::size_t k = first; k < frames.size(); ++k) {
-    for (int y = 0; y < frames[k].height(); ++y) {
-      std::uint8_t* row = frames[k].row(y);
-      std::copy_backward(row, row + frames[k].width() - px, row + frames[k].width());
+    Image<std::uint8_t> moved = frames[k]->clone();
+    for (int y = 0; y < moved.height(); ++y) {
+      std::uint8_t* row = moved.row(y);
+      std::copy_backward(row, row + moved.width() - px, row + moved.width());
     }
+    frames[k] = std::make_shared<const Image<std::uint8_t>>(std::move(moved));
   }
 }
 
@@ -120,15 +125,15 @@ std::vector<Corruption> gray_corruptions(int bits) {
       std::swap(f[2 * bit + 1], f[2 * bit + 3]);
     });
     add("frame " + std::to_string(2 * bit) + " repeated", {RCode::kFramesDoubled},
-        [bit](Frames& f) { f[2 * bit + 2] = f[2 * bit].clone(); });
+        [bit](Frames& f) { f[2 * bit + 2] = f[2 * bit]; });
     add("pair " + std::to_string(bit) + " repeated", {RCode::kFramesDoubled}, [bit](Frames& f) {
-      f[2 * bit + 2] = f[2 * bit].clone();
-      f[2 * bit + 3] = f[2 * bit + 1].clone();
+      f[2 * bit + 2] = f[2 * bit];
+      f[2 * bit + 3] = f[2 * bit + 1];
     });
     add("frame " + std::to_string(2 * bit) + " black", {RCode::kFramesBlack},
-        [bit](Frames& f) { f[2 * bit] = f.back().clone(); });
+        [bit](Frames& f) { f[2 * bit] = f.back(); });
     add("frame " + std::to_string(2 * bit) + " saturated", {RCode::kFramesSaturated},
-        [bit](Frames& f) { f[2 * bit].fill(255); });
+        [bit](Frames& f) { f[2 * bit] = filled(f[2 * bit], 255); });
   }
   add("all inverses swapped", {RCode::kInverseSwapped}, [n](Frames& f) {
     for (std::size_t k = 0; k < 4 * n; k += 2) {
@@ -141,21 +146,9 @@ std::vector<Corruption> gray_corruptions(int bits) {
       [](Frames& f) { std::rotate(f.begin(), f.end() - 1, f.end()); });
   add("columns and rows exchanged", {RCode::kFramesOutOfOrder},
       [n](Frames& f) { std::rotate(f.begin(), f.begin() + static_cast<long>(2 * n), f.end() - 2); });
-  add("all black", {RCode::kFramesBlack}, [](Frames& f) {
-    for (auto& frame : f) {
-      frame.fill(3);
-    }
-  });
-  add("projector off", {RCode::kFramesBlack}, [](Frames& f) {
-    for (auto& frame : f) {
-      frame = f.back().clone();
-    }
-  });
-  add("all saturated", {RCode::kFramesSaturated}, [](Frames& f) {
-    for (auto& frame : f) {
-      frame.fill(255);
-    }
-  });
+  add("all black", {RCode::kFramesBlack}, [](Frames& f) { std::ranges::fill(f, filled(f.front(), 3)); });
+  add("projector off", {RCode::kFramesBlack}, [](Frames& f) { std::ranges::fill(f, Frame(f.back())); });
+  add("all saturated", {RCode::kFramesSaturated}, [](Frames& f) { std::ranges::fill(f, filled(f.front(), 255)); });
   for (const int px : {2, 12}) {
     for (const std::size_t first : {std::size_t{9}, 3 * n}) {
       add("nudged by " + std::to_string(px) + " px at frame " + std::to_string(first), {RCode::kSceneMoved},
@@ -170,7 +163,7 @@ TEST_F(CapturedSession, corrupted_gray_sets_are_refused_with_their_own_name) {
     const Session session = open(name);
     const Frames sound = load(session, 0, 0);
     for (const Corruption& corruption : gray_corruptions(bits)) {
-      Frames frames = copy(sound);
+      Frames frames = sound;
       corruption.apply(frames);
       const SequenceReport report = judge(session, frames);
       const bool named =
@@ -185,9 +178,9 @@ TEST_F(CapturedSession, corrupted_phase_sets_are_refused_with_their_own_name) {
   const Session session = open("phaseshift-angel");
   const std::vector<Corruption> corruptions = {
       {"steps 2 and 5 exchanged", [](Frames& f) { std::swap(f[4], f[7]); }, {RCode::kFramesOutOfOrder}},
-      {"step repeated", [](Frames& f) { f[5] = f[4].clone(); }, {RCode::kFramesDoubled}},
-      {"step black", [](Frames& f) { f[6] = f[1].clone(); }, {RCode::kFramesBlack}},
-      {"step saturated", [](Frames& f) { f[6].fill(255); }, {RCode::kFramesSaturated}},
+      {"step repeated", [](Frames& f) { f[5] = f[4]; }, {RCode::kFramesDoubled}},
+      {"step black", [](Frames& f) { f[6] = f[1]; }, {RCode::kFramesBlack}},
+      {"step saturated", [](Frames& f) { f[6] = filled(f[6], 255); }, {RCode::kFramesSaturated}},
       {"one frame late",
        [](Frames& f) { std::rotate(f.begin(), f.end() - 1, f.end()); },
        {RCode::kFramesOutOfOrder, RCode::kFramesBlack, RCode::kFramesDoubled}},
@@ -195,7 +188,7 @@ TEST_F(CapturedSession, corrupted_phase_sets_are_refused_with_their_own_name) {
   };
   const Frames sound = load(session, 0, 0);
   for (const Corruption& corruption : corruptions) {
-    Frames frames = copy(sound);
+    Frames frames = sound;
     corruption.apply(frames);
     const SequenceReport report = judge(session, frames);
     const bool named =
