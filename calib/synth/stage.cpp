@@ -21,10 +21,10 @@ model::Pose turned(double rx, double ry, double rz, const Eigen::Vector3d& t) {
   return pose;
 }
 
-model::Camera pretend_camera(Noise& noise, int scale) {
+model::Camera pretend_camera(Noise& noise, double scale) {
   model::Camera camera;
-  camera.width = 640 * scale;
-  camera.height = 512 * scale;
+  camera.width = static_cast<int>(640 * scale);
+  camera.height = static_cast<int>(512 * scale);
   camera.fx = 800 * scale * noise.uniform(0.97, 1.03);
   camera.fy = camera.fx * noise.uniform(0.998, 1.002);
   camera.cx = 320 * scale + noise.uniform(-8, 8) * scale;
@@ -61,7 +61,7 @@ model::Rig PretendRig::rig() const {
   return all;
 }
 
-PretendRig pretend_rig(std::uint64_t seed, int scale) {
+PretendRig pretend_rig(std::uint64_t seed, double scale) {
   Noise noise(seed, 0x716);
   const auto about = [&](double value, double spread) { return value + noise.uniform(-spread, spread); };
   PretendRig pretend;
@@ -75,8 +75,8 @@ PretendRig pretend_rig(std::uint64_t seed, int scale) {
       turned(about(0, 0.01), about(-0.21, 0.01), about(0, 0.01), {about(0.2, 0.01), about(0, 0.005), about(0, 0.005)})
           .inverse();
   Lamp& lamp = pretend.lamp;
-  lamp.panel.width = 640 * scale;
-  lamp.panel.height = 400 * scale;
+  lamp.panel.width = static_cast<int>(640 * scale);
+  lamp.panel.height = static_cast<int>(400 * scale);
   lamp.panel.fx = 700 * scale * about(1, 0.03);
   lamp.panel.fy = lamp.panel.fx * about(1, 0.002);
   lamp.panel.cx = 320 * scale + about(0, 10) * scale;

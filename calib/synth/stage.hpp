@@ -41,7 +41,7 @@ struct PretendRig {
 };
 
 /// A rig whose lenses and places vary with the seed by some per cent. `scale` 1: cameras 640x512, panel 640x400.
-PretendRig pretend_rig(std::uint64_t seed, int scale = 1);
+PretendRig pretend_rig(std::uint64_t seed, double scale = 1);
 
 /// The chessboard of the pretend sessions: 9 x 6 inner corners of 30 mm.
 TargetSpec pretend_target();

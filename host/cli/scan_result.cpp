@@ -67,6 +67,7 @@ report::Judgement judge(const scan::Scan& scan, const ScanNames& names) {
                               : fmt::format("; it costs {:.2f} px of disagreement", scan.refit->effect_px)),
            scan.refitted ? "Calibrate the cameras again to trust lengths."
                          : "Scan with --refit-pose, or calibrate the cameras again.");
+    redo = !scan.refitted && scan.refit->effect_px > kUselessPx;
   }
   if (scan.refitted && std::abs(scan.depth_ratio - 1) > kDepthChange) {
     object(fmt::format("the refitted pose changes depths by {:+.1f} %: lengths are no better known than that",
@@ -77,7 +78,7 @@ report::Judgement judge(const scan::Scan& scan, const ScanNames& names) {
   if (noise > kCoarsePx) {
     object(fmt::format("matches scatter by {:.2f} px", noise),
            "Focus cameras and projector, raise the exposure, keep the scene still.");
-    redo = noise > kUselessPx;
+    redo = redo || noise > kUselessPx;
   }
   if (!scan.moved() && scan.epipolar.sigma_px > kUselessPx) {
     object(fmt::format("{} and {} disagree by {:.2f} px", names.left, names.right, scan.epipolar.sigma_px),
