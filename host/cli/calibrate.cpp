@@ -9,6 +9,7 @@
 
 #include "calib/assess/assess.hpp"
 #include "host/exchange/calibration_file.hpp"
+#include "host/pretend/truth_file.hpp"
 #include "host/report/calibration_result.hpp"
 #include "host/report/result.hpp"
 
@@ -138,6 +139,28 @@ void print(Context& context, const TargetSpec& target, const solve::Solution& so
   }
 }
 
+/// How far a rig that was rendered is from its truth; nothing for a session that was not rendered.
+Result<std::optional<pretend::RigError>> truth_error(const std::string& session, const calib::model::Rig& rig) {
+  const auto truth = pretend::truth_beside(session);
+  if (!truth) {
+    return truth.error();
+  }
+  return *truth ? pretend::rig_error(rig, (*truth)->rig) : std::optional<pretend::RigError>();
+}
+
+void add_truth(Context& context, const pretend::RigError& error) {
+  context.json()["truth"] = {{"focal_relative", error.focal},
+                             {"principal_point_px", error.centre_px},
+                             {"baseline_m", error.baseline_m},
+                             {"chi_square", error.chi_square},
+                             {"degrees_of_freedom", error.degrees_of_freedom}};
+  context.print(fmt::format(
+      "error against the truth: focal length {:.3f} %, principal point {:.2f} px, baseline {:.3f} mm; chi-square "
+      "{:.1f} "
+      "for {} parameters\n",
+      100 * error.focal, error.centre_px, 1e3 * error.baseline_m, error.chi_square, error.degrees_of_freedom));
+}
+
 }  // namespace
 
 Status set_lens(std::string_view text, solve::SolveOptions& options) {
@@ -193,6 +216,13 @@ Result<ExitCode> calibrate(Context& context, const calibrate::Gathered& gathered
   context.json() = report::summary_json(result);
   add_details(context.json(), target, *solution, *assessment);
   print(context, target, *solution, *assessment);
+  const auto truth = truth_error(input.session, solution->rig);
+  if (!truth) {
+    return truth.error();
+  }
+  if (*truth) {
+    add_truth(context, **truth);
+  }
   return assessment->verdict == assess::Verdict::kRedo ? ExitCode::kVerdictRedo : ExitCode::kDone;
 }
 

@@ -1,11 +1,10 @@
-// Small rendered sessions for tests: drawn once for each build of the tests, copied (by links) for each test.
+// Small rendered sessions for tests: drawn once for each build of the tests, copied by each test that spoils them.
 #pragma once
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -50,42 +49,6 @@ std::filesystem::path rendered_once(const std::string& name, const Make& make) {
   }
   ::close(lock);
   return folder;
-}
-
-/// A folder that is gone with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    const std::filesystem::path build =
-        program_folder().parent_path() / "pretend-sessions";  // links do not cross disks
-    std::filesystem::create_directories(build);
-    std::string name = (build / "test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("no temporary folder");
-    }
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string read_text(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Replaces a file that may be a link to the original.
-inline void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::remove(path);
-  std::ofstream(path, std::ios::binary) << text;
 }
 
 }  // namespace raysteer::support

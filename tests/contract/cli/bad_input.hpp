@@ -4,21 +4,39 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/synth/stage.hpp"
 #include "host/exchange/calibration_file.hpp"
 #include "host/session/image_codec.hpp"
+#include "tests/contract/cli/program.hpp"
 #include "tests/support/pretend_sessions.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/process.hpp"
 
 namespace raysteer::bad_input {
 
 namespace fs = std::filesystem;
 using calib::synth::Stage;
-using support::Outcome;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string printed;  ///< standard output
+  nlohmann::json json;  ///< the same, parsed; discarded where it is no JSON
+  std::string error_code() const { return json.is_object() ? json.value("/error/code"_json_pointer, "") : ""; }
+};
+
+/// `before` goes in front of the program in a shell: "ulimit -f 8;".
+inline Outcome run_raysteer(std::vector<std::string> words, const std::string& before = "") {
+  words.insert(words.begin(),
+               {"sh", "-c", before + " \"$@\"", "sh", (support::program_folder() / "raysteer").string()});
+  const support::Finished finished = support::run_program(std::move(words));
+  return {finished.exit_code, finished.out, host::cli::parse_one(finished.out)};
+}
 
 inline fs::path scan_session() {
   return support::rendered_once("scan", [] { return scan_stage(support::small_pretend_rig(), support::kPretendSeed); });
@@ -39,7 +57,7 @@ class BadInput : public ::testing::Test {
   /// A copy of a rendered session whose files may be spoiled.
   fs::path copy(const fs::path& session) const {
     const fs::path to = work() / session.filename();
-    fs::copy(session, to, fs::copy_options::recursive | fs::copy_options::create_hard_links);
+    fs::copy(session, to, fs::copy_options::recursive);
     return to;
   }
   fs::path render(const Stage& stage) const {
@@ -81,7 +99,7 @@ class BadInput : public ::testing::Test {
     return run({"calibrate", "projector", (session / "session.toml").string()});
   }
   Outcome check(const fs::path& session) const {
-    return support::run_raysteer({"session", "check", (session / "session.toml").string(), "--json"});
+    return run_raysteer({"session", "check", (session / "session.toml").string(), "--json"});
   }
 
   /// Refused with this code, and the folder for results was not made, nor anything beside it.
@@ -99,10 +117,10 @@ class BadInput : public ::testing::Test {
   Outcome run(std::vector<std::string> words, const std::string& before = "") const {
     fs::create_directories(results());
     words.insert(words.end(), {"--out", (results() / "out").string(), "--json"});
-    return support::run_raysteer(words, before);
+    return run_raysteer(words, before);
   }
 
-  support::TemporaryFolder folder_;
+  support::ScratchFolder folder_;
 };
 
 inline fs::path frame(const fs::path& session, int index, const std::string& camera = "left") {
@@ -116,9 +134,10 @@ inline void swap_files(const fs::path& a, const fs::path& b) {
   fs::rename(aside, b);
 }
 
+inline void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
 template <class Pixel>
 void write_png(const fs::path& path, const Image<Pixel>& image) {
-  fs::remove(path);
   const auto bytes = host::session::encode_png(image.view());
   ASSERT_TRUE(bytes && host::session::write_file(path, *bytes));
 }
@@ -138,10 +157,10 @@ void rewrite_frames(const fs::path& session, const Change& change) {
 
 inline void edit_session(const fs::path& session, const std::string& what, const std::string& with) {
   const fs::path file = session / "session.toml";
-  const std::string text = support::read_text(file);
+  const std::string text = support::read_all(file);
   const std::string edited = std::regex_replace(text, std::regex(what), with);
   ASSERT_NE(text, edited) << "nothing in session.toml matches " << what;
-  support::write_text(file, edited);
+  write_text(file, edited);
 }
 
 /// Index of the first frame of a block.

@@ -28,8 +28,8 @@ TEST_F(BadInput, a_missing_frame_is_named) {
 
 TEST_F(BadInput, a_truncated_frame_is_refused) {
   const fs::path session = copy(scan_session());
-  const std::string bytes = support::read_text(frame(session, 20));
-  support::write_text(frame(session, 20), bytes.substr(0, bytes.size() / 2));
+  const std::string bytes = support::read_all(frame(session, 20));
+  write_text(frame(session, 20), bytes.substr(0, bytes.size() / 2));
   expect_refused(scan(session), RCode::kFileTruncated);
 }
 
@@ -176,16 +176,16 @@ TEST_F(BadInput, links_that_leave_the_session_are_refused) {
 TEST_F(BadInput, circular_includes_are_refused) {
   const fs::path session = copy(scan_session());
   edit_session(session, "format = 1\n", "format = 1\ninclude = [\"rig.toml\"]\n");
-  support::write_text(session / "rig.toml", "include = [\"session.toml\"]\n");
+  write_text(session / "rig.toml", "include = [\"session.toml\"]\n");
   expect_refused(scan(session), RCode::kCircularInclude);
 }
 
 TEST_F(BadInput, a_calibration_with_nan_is_refused) {
   const fs::path file = true_calibration();
-  const std::string text = support::read_text(file);
-  support::write_text(file, std::regex_replace(text, std::regex("focal_px = .[0-9.e+-]+"), "focal_px = [nan",
-                                               std::regex_constants::format_first_only));
-  ASSERT_NE(support::read_text(file), text);
+  const std::string text = support::read_all(file);
+  write_text(file, std::regex_replace(text, std::regex("focal_px = .[0-9.e+-]+"), "focal_px = [nan",
+                                      std::regex_constants::format_first_only));
+  ASSERT_NE(support::read_all(file), text);
   expect_refused(scan_with(scan_session(), file), RCode::kNotFinite);
 }
 
@@ -215,7 +215,7 @@ TEST_F(BadInput, a_full_disk_leaves_nothing_half_written) {
     GTEST_SKIP() << "no private disks here (unshare -rm)";
   }
   expect_refused(scan(scan_session(), *tiny), RCode::kDiskFull);
-  EXPECT_EQ(support::read_text(listing), "");
+  EXPECT_EQ(support::read_all(listing), "");
 }
 
 TEST_F(BadInput, a_file_that_may_not_grow_leaves_nothing_half_written_and_keeps_earlier_results) {
@@ -223,10 +223,10 @@ TEST_F(BadInput, a_file_that_may_not_grow_leaves_nothing_half_written_and_keeps_
   const std::string limit = "ulimit -f 64;";
   expect_refused(scan(scan_session(), limit), RCode::kWriteFailed);
   ASSERT_EQ(scan(scan_session()).exit_code, 0);
-  const std::string before = support::read_text(results() / "out" / "result.json");
+  const std::string before = support::read_all(results() / "out" / "result.json");
   ASSERT_FALSE(before.empty());
   EXPECT_EQ(scan(scan_session(), limit).error_code(), to_string(RCode::kWriteFailed));
-  EXPECT_EQ(support::read_text(results() / "out" / "result.json"), before);
+  EXPECT_EQ(support::read_all(results() / "out" / "result.json"), before);
   EXPECT_EQ(std::distance(fs::directory_iterator(results()), {}), 1) << "a temporary folder was left behind";
 }
 
