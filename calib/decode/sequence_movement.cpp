@@ -20,6 +20,8 @@ constexpr double kWarnShift = 0.3;
 constexpr double kMostShift = 1.5;
 // Share of the samples that may change besides.
 constexpr double kMostChanged = 0.04;
+// A frame that is bright in less of the lit view tells nothing: the rim of a sliver passes for movement.
+constexpr double kLeastBright = 0.25;
 
 // Groups of frames that add up to the same picture whatever they show: pattern and inverse, all steps of a sinusoid,
 // white and black. What differs between two such sums has moved.
@@ -119,7 +121,7 @@ std::vector<Look> look_at_bright_places(const SampledSet& set, const Findings& f
   const Tiles reference = sum_of(set, {{white}});
   for (const GrayBlock& gray : set.gray) {
     for (const BitFrames& bit : gray.bits) {
-      if (bit.inverse >= 0 || findings.is_disputed(bit.pattern)) {
+      if (bit.inverse >= 0 || findings.is_disputed(bit.pattern) || set.bright_share(bit.pattern) < kLeastBright) {
         continue;
       }
       std::vector<std::uint8_t> bright = usable;
