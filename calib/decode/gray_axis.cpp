@@ -10,7 +10,7 @@ namespace {
 /// How far a border may be: four times the stripe's width in camera pixels if the camera saw just the panel.
 int reach_of(int camera_px, int codes) { return std::clamp(4 * camera_px / std::max(codes, 1), 6, 64); }
 
-/// Floats of a gap, and of what is found on both sides of a pixel: place, number, variance, twice.
+/// Floats of a gap: place, number, variance, twice.
 constexpr int kParts = 6;
 
 }  // namespace
@@ -38,7 +38,6 @@ GrayAxis<T>::GrayAxis(Axis axis, const PatternBlock& block, const GrayLimits& li
   gaps_.assign(kParts * static_cast<std::size_t>(stride_) * static_cast<std::size_t>(gap_rows_ + 1), 0.0F);
   noise_.resize(2 * static_cast<std::size_t>(width));
   previous_.resize(3 * static_cast<std::size_t>(width));
-  scratch_.resize(kParts * static_cast<std::size_t>(width));
   before_.resize(static_cast<std::size_t>(reach_));
   after_.resize(static_cast<std::size_t>(reach_));
 }
@@ -123,7 +122,7 @@ void GrayAxis<T>::place(int v) {
   place_between_borders({before_.data(), after_.data(), reach_, static_cast<float>(block_.stripe_px),
                          static_cast<float>(block_.offset_px), borders_.place.empty() ? nullptr : borders_.place.data(),
                          static_cast<int>(borders_.place.size()), borders_.excess_variance},
-                        code_->row(v), limits_.width, value_->row(v), variance_->row(v), scratch_.data());
+                        code_->row(v), limits_.width, value_->row(v), variance_->row(v));
 }
 
 template class GrayAxis<std::uint8_t>;

@@ -52,7 +52,6 @@ class GrayAxis {
   std::vector<float> gaps_;   ///< place, number, variance of the border nearest to a, then to b
   std::vector<float> noise_;  ///< variance of p - q, this row and the one before
   std::vector<T> previous_;   ///< finest, weakest, weakest_bit of the row before
-  std::vector<float> scratch_;
   std::vector<GapRow> before_, after_;
 };
 

@@ -9,6 +9,10 @@
 namespace raysteer::calib::decode {
 namespace {
 
+/// Pixels placed together: what is found on both sides of them, 6 floats each, stays in the first-level cache, and a
+/// far border of one does not send all of a row searching.
+constexpr int kPiece = 256;
+
 // Written for the vectoriser: values instead of references (std::min, std::max), masks of one type instead of bool, `&`
 // and `|` instead of `&&` and `||`.
 template <class T>
@@ -211,19 +215,35 @@ template <class T>
   return open != 0;
 }
 
-[[gnu::always_inline]] inline void place_row(const BorderSearch& search, const std::uint16_t* __restrict code,
-                                             int count, float* __restrict value, float* __restrict variance,
-                                             float* __restrict scratch) {
-  float* __restrict side[6];
-  for (int k = 0; k < 6; ++k) {
-    side[k] = scratch + k * static_cast<std::ptrdiff_t>(count);
+/// No pixel of a piece has a code: shadow, mostly, of which there is much and in large pieces.
+[[gnu::always_inline]] inline bool nothing_coded(const std::uint16_t* __restrict code, int count) {
+  std::uint16_t all = CodeMap::kNoCode;
+  for (int i = 0; i < count; ++i) {
+    all = static_cast<std::uint16_t>(all & code[i]);
   }
+  return all == CodeMap::kNoCode;
+}
+
+/// Coordinates of `count` pixels, at most kPiece, from pixel `first` of the row on.
+[[gnu::always_inline]] inline void place_piece(const BorderSearch& search, int first,
+                                               const std::uint16_t* __restrict code, int count, float* __restrict value,
+                                               float* __restrict variance) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  if (nothing_coded(code, count)) {
+    for (int i = 0; i < count; ++i) {
+      value[i] = kNan;
+      variance[i] = kNan;
+    }
+    return;
+  }
+  alignas(64) float side[6][kPiece];
   for (int k = 0; k < search.reach; ++k) {
     const float shift = -1.0F - static_cast<float>(k);
     const GapRow& gap = search.before[k];
-    const bool open =
-        k == 0 ? take_gap(gap.place_b, gap.number_b, gap.variance_b, shift, count, side[0], side[1], side[2])
-               : search_gap(gap.place_b, gap.number_b, gap.variance_b, shift, count, side[0], side[1], side[2]);
+    const bool open = k == 0 ? take_gap(gap.place_b + first, gap.number_b + first, gap.variance_b + first, shift, count,
+                                        side[0], side[1], side[2])
+                             : search_gap(gap.place_b + first, gap.number_b + first, gap.variance_b + first, shift,
+                                          count, side[0], side[1], side[2]);
     if (!open) {
       break;
     }
@@ -231,9 +251,10 @@ template <class T>
   for (int k = 0; k < search.reach; ++k) {
     const auto shift = static_cast<float>(k);
     const GapRow& gap = search.after[k];
-    const bool open =
-        k == 0 ? take_gap(gap.place_a, gap.number_a, gap.variance_a, shift, count, side[3], side[4], side[5])
-               : search_gap(gap.place_a, gap.number_a, gap.variance_a, shift, count, side[3], side[4], side[5]);
+    const bool open = k == 0 ? take_gap(gap.place_a + first, gap.number_a + first, gap.variance_a + first, shift, count,
+                                        side[3], side[4], side[5])
+                             : search_gap(gap.place_a + first, gap.number_a + first, gap.variance_a + first, shift,
+                                          count, side[3], side[4], side[5]);
     if (!open) {
       break;
     }
@@ -250,7 +271,6 @@ template <class T>
   const float stripe = search.stripe_px;
   const float origin = -search.offset_px - 0.5F;
   const float excess = search.excess_variance;
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const float* __restrict place_before = side[0];
   const float* __restrict border_before = side[1];
   const float* __restrict variance_before = side[2];
@@ -308,8 +328,10 @@ RAYSTEER_CLONES void find_borders(const EdgeSource<std::uint16_t>& a, const Edge
 }
 
 RAYSTEER_CLONES void place_between_borders(const BorderSearch& search, const std::uint16_t* code, int count,
-                                           float* value, float* variance, float* scratch) {
-  place_row(search, code, count, value, variance, scratch);
+                                           float* value, float* variance) {
+  for (int first = 0; first < count; first += kPiece) {
+    place_piece(search, first, code + first, lesser(kPiece, count - first), value + first, variance + first);
+  }
 }
 
 }  // namespace raysteer::calib::decode

@@ -69,8 +69,7 @@ struct BorderSearch {
 
 /// `value` in projector px and its variance; NaN where the code is kNoCode. A pixel without a border on both sides gets
 /// the middle of its stripe and the variance of an even spread over it, stripe^2 / 12.
-/// `scratch` holds 6 * count floats.
 void place_between_borders(const BorderSearch& search, const std::uint16_t* code, int count, float* value,
-                           float* variance, float* scratch);
+                           float* variance);
 
 }  // namespace raysteer::calib::decode
