@@ -29,9 +29,11 @@ class RowCheck {
   std::size_t covered() const { return covered_; }
 
  private:
+  void ask_neighbours(int v);
+
   CodeMap& map_;
   Resemblance resemblance_;
-  std::vector<std::uint16_t> agreeing_;
+  std::vector<std::uint16_t> nothing_;  ///< codes of a row outside the image
   std::size_t valid_ = 0, saturated_ = 0, covered_ = 0;
 };
 
