@@ -11,6 +11,11 @@
 #define RAYSTEER_CLONES
 #endif
 
+/// Defined where code for AVX2 may be written out, to be chosen with __builtin_cpu_supports.
+#if defined(__x86_64__) && defined(__GNUC__)
+#define RAYSTEER_AVX2
+#endif
+
 /// Before a loop: its rows do not overlap, and none of its turns reads what another wrote.
 #if defined(__clang__)
 #define RAYSTEER_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
