@@ -293,6 +293,38 @@ template <class T>
   }
 }
 
+/// No pixel of a piece has a code: shadow, mostly, of which there is much and in large pieces.
+[[gnu::always_inline]] inline bool nothing_coded(const std::uint16_t* __restrict code, int count) {
+  std::uint16_t all = CodeMap::kNoCode;
+  for (int i = 0; i < count; ++i) {
+    all = static_cast<std::uint16_t>(all & code[i]);
+  }
+  return all == CodeMap::kNoCode;
+}
+
+/// The same by pieces, of which those in shadow have lost gaps only; place and number of such are never used.
+template <class T>
+[[gnu::always_inline]] inline void find_by_pieces(const EdgeSource<T>& a, const EdgeSource<T>& b, int count,
+                                                  const GapRow& gaps) {
+  for (int first = 0; first < count; first += kPiece) {
+    const int size = lesser(kPiece, count - first);
+    const GapRow here{gaps.place_a + first,  gaps.place_b + first,    gaps.number_a + first,
+                      gaps.number_b + first, gaps.variance_a + first, gaps.variance_b + first};
+    if (nothing_coded(a.code + first, size)) {
+      for (int i = 0; i < size; ++i) {
+        here.variance_a[i] = GapRow::kLost;
+        here.variance_b[i] = GapRow::kLost;
+      }
+      continue;
+    }
+    const auto from = [first](const EdgeSource<T>& row) {
+      return EdgeSource<T>{row.code + first, row.finest + first, row.weakest + first, row.weakest_bit + first,
+                           row.variance + first};
+    };
+    find_row_borders(from(a), from(b), size, here);
+  }
+}
+
 /// What the nearest gap shows; returns whether some pixel still has nothing.
 [[gnu::always_inline]] inline bool take_gap(const float* __restrict place, const float* __restrict number,
                                             const float* __restrict variance, float shift, int count,
@@ -325,15 +357,6 @@ template <class T>
     open |= here == GapRow::kNone ? 1 : 0;
   }
   return open != 0;
-}
-
-/// No pixel of a piece has a code: shadow, mostly, of which there is much and in large pieces.
-[[gnu::always_inline]] inline bool nothing_coded(const std::uint16_t* __restrict code, int count) {
-  std::uint16_t all = CodeMap::kNoCode;
-  for (int i = 0; i < count; ++i) {
-    all = static_cast<std::uint16_t>(all & code[i]);
-  }
-  return all == CodeMap::kNoCode;
 }
 
 /// Coordinates of `count` pixels, at most kPiece, from pixel `first` of the row on.
@@ -443,12 +466,12 @@ RAYSTEER_CLONES void classify(const GraySums<std::uint16_t>& sums, const std::ui
 
 RAYSTEER_CLONES void find_borders(const EdgeSource<std::uint8_t>& a, const EdgeSource<std::uint8_t>& b, int count,
                                   const GapRow& gaps) {
-  find_row_borders(a, b, count, gaps);
+  find_by_pieces(a, b, count, gaps);
 }
 
 RAYSTEER_CLONES void find_borders(const EdgeSource<std::uint16_t>& a, const EdgeSource<std::uint16_t>& b, int count,
                                   const GapRow& gaps) {
-  find_row_borders(a, b, count, gaps);
+  find_by_pieces(a, b, count, gaps);
 }
 
 RAYSTEER_CLONES void place_between_borders(const BorderSearch& search, const std::uint16_t* code, int count,
