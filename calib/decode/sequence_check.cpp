@@ -35,7 +35,7 @@ constexpr int kMostTiles = 280;
 void settle(Findings& findings) {
   std::vector<Error>& faults = findings.report.faults;
   const auto first = [&](RCode rcode) {
-    std::ranges::stable_partition(faults, [&](const Error& error) { return error.rcode == rcode; });
+    std::stable_partition(faults.begin(), faults.end(), [&](const Error& error) { return error.rcode == rcode; });
   };
   const bool moved = std::ranges::any_of(faults, [](const Error& error) { return error.rcode == RCode::kSceneMoved; });
   if (moved && findings.broken_pairs <= 1) {

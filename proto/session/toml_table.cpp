@@ -95,7 +95,7 @@ void TomlTable::missing(std::string_view key) {
   faults_->add(fail(RCode::kMissingKey, place(*layers_.front()) + ": " + key_name(key)));
 }
 
-std::string TomlTable::text(std::string_view key, std::optional<std::string> fallback) {
+std::string TomlTable::text(std::string_view key, const std::optional<std::string>& fallback) {
   const toml::node* node = find(key);
   if (node == nullptr) {
     if (!fallback) {

@@ -57,7 +57,7 @@ class TomlTable {
   TomlTable(std::vector<const toml::table*> layers, std::string what, Faults& faults);
 
   // Without a fallback the key is required. Faults: kMissingKey, kBadValue (wrong type, out of range).
-  std::string text(std::string_view key, std::optional<std::string> fallback = {});
+  std::string text(std::string_view key, const std::optional<std::string>& fallback = {});
   std::int64_t integer(std::string_view key, Range<std::int64_t> range, std::optional<std::int64_t> fallback = {});
   /// Any finite number, with or without decimal point. `hint` is added to the message of a value out of range.
   double number(std::string_view key, Range<double> range, std::optional<double> fallback = {},
