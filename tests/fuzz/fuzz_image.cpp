@@ -11,8 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace raysteer::host::session;
   const Result<ImageHeader> header = read_header({data, size});
   // Large pictures only make the fuzzer slow.
-  constexpr std::int64_t kMostPixels = 1 << 20;
-  if (!header || std::int64_t{header->width} * header->height > kMostPixels) {
+  constexpr std::int64_t kMostTried = 1 << 20;
+  if (!header || std::int64_t{header->width} * header->height > kMostTried) {
     return 0;
   }
   if (const Result<Frame> frame = decode_image({data, size})) {
