@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "calib/synth/decode_trial.hpp"
+#include "tests/support/seed.hpp"
 
 namespace raysteer::calib::decode {
 namespace {
@@ -20,12 +20,6 @@ synth::SeparableView view(double electrons, int rows = 8) {
   return view;
 }
 
-std::uint64_t fresh_seed() {
-  const std::uint64_t seed = std::random_device{}();
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
-  return seed;
-}
-
 void expect_honest(const synth::DecodeTrial& trial) {
   // Algorithms 2.7: predicted sigma and observed scatter agree within 0.8 to 1.25.
   EXPECT_GT(trial.predicted_px / trial.rms_px, 0.8);
@@ -35,7 +29,7 @@ void expect_honest(const synth::DecodeTrial& trial) {
 }
 
 TEST(Decoder, gray_with_inverse_is_sub_pixel_and_knows_how_much) {
-  const auto trial = synth::decode_trial(synth::gray_sequence(kPanel, true), view(7000), {}, fresh_seed());
+  const auto trial = synth::decode_trial(synth::gray_sequence(kPanel, true), view(7000), {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   expect_honest(*trial);
   EXPECT_LT(trial->rms_px, 0.05);
@@ -44,21 +38,23 @@ TEST(Decoder, gray_with_inverse_is_sub_pixel_and_knows_how_much) {
 }
 
 TEST(Decoder, gray_thresholded_by_white_and_black_is_sub_pixel) {
-  const auto trial = synth::decode_trial(synth::gray_sequence(kPanel, false), view(7000), {}, fresh_seed());
+  const auto trial = synth::decode_trial(synth::gray_sequence(kPanel, false), view(7000), {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   expect_honest(*trial);
   EXPECT_LT(trial->rms_px, 0.07);
 }
 
 TEST(Decoder, default_set_reaches_0_03_px_in_good_light) {
-  const auto trial = synth::decode_trial(synth::gray_phase_sequence(kPanel, true, 8, 16), view(7000), {}, fresh_seed());
+  const auto trial =
+      synth::decode_trial(synth::gray_phase_sequence(kPanel, true, 8, 16), view(7000), {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   expect_honest(*trial);
   EXPECT_NEAR(trial->rms_px, 0.027, 0.005);
 }
 
 TEST(Decoder, default_set_reaches_0_06_px_in_poor_light) {
-  const auto trial = synth::decode_trial(synth::gray_phase_sequence(kPanel, true, 8, 16), view(1500), {}, fresh_seed());
+  const auto trial =
+      synth::decode_trial(synth::gray_phase_sequence(kPanel, true, 8, 16), view(1500), {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   expect_honest(*trial);
   EXPECT_NEAR(trial->rms_px, 0.057, 0.008);
@@ -66,7 +62,7 @@ TEST(Decoder, default_set_reaches_0_06_px_in_poor_light) {
 
 TEST(Decoder, fast_set_thresholds_by_the_mean_of_the_phase) {
   const auto trial =
-      synth::decode_trial(synth::gray_phase_sequence(kPanel, false, 4, 16), view(7000), {}, fresh_seed());
+      synth::decode_trial(synth::gray_phase_sequence(kPanel, false, 4, 16), view(7000), {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   expect_honest(*trial);
   EXPECT_NEAR(trial->rms_px, 0.038, 0.007);
@@ -74,7 +70,7 @@ TEST(Decoder, fast_set_thresholds_by_the_mean_of_the_phase) {
 
 TEST(Decoder, beat_of_two_periods_orders_them) {
   const auto trial = synth::decode_trial(synth::heterodyne_sequence(kPanel, 8, kPanel / 40.0, kPanel / 41.0),
-                                         view(7000), {}, fresh_seed());
+                                         view(7000), {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   expect_honest(*trial);
   EXPECT_LT(trial->order_residual, 0.1);
@@ -88,7 +84,7 @@ TEST(Decoder, sixteen_bits_decode_like_eight) {
   wide.read_sigma_dn = 8;
   for (const PatternSequence& sequence :
        {synth::gray_sequence(kPanel, true), synth::gray_phase_sequence(kPanel, true, 8, 16)}) {
-    const auto trial = synth::decode_trial(sequence, wide, {}, fresh_seed());
+    const auto trial = synth::decode_trial(sequence, wide, {}, support::seed());
     ASSERT_TRUE(trial) << trial.error().message();
     expect_honest(*trial);
     EXPECT_LT(trial->rms_px, 0.05);
@@ -98,7 +94,7 @@ TEST(Decoder, sixteen_bits_decode_like_eight) {
 TEST(Decoder, light_that_bounced_does_not_flip_codes) {
   synth::SeparableView bounced = view(7000);
   bounced.interreflection = 0.4;
-  const auto trial = synth::decode_trial(synth::gray_phase_sequence(kPanel, true, 8, 16), bounced, {}, fresh_seed());
+  const auto trial = synth::decode_trial(synth::gray_phase_sequence(kPanel, true, 8, 16), bounced, {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   EXPECT_EQ(trial->gross, 0);
   EXPECT_LT(trial->rms_px, 0.1);
@@ -113,7 +109,7 @@ TEST(Decoder, a_scaled_panel_is_found_out_and_measured) {
   seen.blur_px = 0.8;
   seen.dropped_column = 1;
   seen.dropped_of = 3;
-  const auto trial = synth::decode_trial(sequence, seen, {}, fresh_seed());
+  const auto trial = synth::decode_trial(sequence, seen, {}, support::seed());
   ASSERT_TRUE(trial) << trial.error().message();
   EXPECT_GT(trial->border_displacement, 0.2);
   EXPECT_LT(trial->scatter_px, 0.22) << "about a smooth surface; 0.45 with borders where they should be";
