@@ -6,7 +6,7 @@
 
 #include "host/exchange/calibration_file.hpp"
 #include "host/exchange/write_file.hpp"
-#include "proto/session/toml_table.hpp"
+#include "proto/document/toml_table.hpp"
 
 namespace raysteer::host::exchange {
 namespace {
@@ -15,8 +15,8 @@ using calib::model::Device;
 using calib::model::DeviceKind;
 using calib::model::LensModel;
 using calib::model::Rig;
-using proto::session::Faults;
-using proto::session::TomlTable;
+using proto::document::Faults;
+using proto::document::TomlTable;
 
 constexpr std::int64_t kFormatVersion = 1;
 constexpr double kHuge = 1e12;  // beyond any number of a rig, and far from overflow

@@ -16,8 +16,6 @@
 
 namespace raysteer::host::session {
 
-using proto::session::Frame;
-
 enum class ImageKind { kUnknown, kPng, kJpeg, kPgm, kBmp, kRaw };
 
 /// What the header says; the pixels may still be damaged.

@@ -6,11 +6,16 @@
 #include <string>
 #include <utility>
 
+#include "proto/document/toml_table.hpp"
 #include "proto/session/file_name.hpp"
 #include "proto/session/manifest.hpp"
-#include "proto/session/toml_table.hpp"
 
 namespace raysteer::proto::session {
+
+using document::Faults;
+using document::place;
+using document::Range;
+using document::TomlTable;
 namespace {
 
 // Bounds that only nonsense exceeds; they keep memory and time small whatever the file says.

@@ -4,16 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <variant>
 #include <vector>
 
-#include "hal/base/image.hpp"
+#include "hal/base/frame.hpp"
 #include "hal/base/result.hpp"
 
 namespace raysteer::proto::session {
-
-/// Grey pixels as a camera gives them.
-using Frame = std::variant<Image<std::uint8_t>, Image<std::uint16_t>>;
 
 /// Files begin with these bytes.
 inline constexpr std::uint8_t kRawMagic[4] = {'R', 'S', 'F', '1'};

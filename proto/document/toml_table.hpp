@@ -31,7 +31,7 @@
 
 #include "hal/base/result.hpp"
 
-namespace raysteer::proto::session {
+namespace raysteer::proto::document {
 
 /// The faults found while reading. Unknown keys outrank the rest: a misspelt key usually makes a missing one, too.
 class Faults {
@@ -97,4 +97,4 @@ class TomlTable {
 /// "demo.toml:12"
 std::string place(const toml::node& node);
 
-}  // namespace raysteer::proto::session
+}  // namespace raysteer::proto::document

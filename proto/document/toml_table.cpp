@@ -1,4 +1,4 @@
-#include "proto/session/toml_table.hpp"
+#include "proto/document/toml_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "hal/base/nearest.hpp"
 
-namespace raysteer::proto::session {
+namespace raysteer::proto::document {
 namespace {
 
 std::string_view type_name(const toml::node& node) {
@@ -352,4 +352,4 @@ void TomlTable::finish() {
   }
 }
 
-}  // namespace raysteer::proto::session
+}  // namespace raysteer::proto::document
