@@ -115,7 +115,7 @@ struct Tolerance {
 
 /// A fault asked for: which device, what, when, how often. "left.drop@2s*3" on the command line.
 struct Fault {
-  std::string device;  ///< "mirror", "projector", "left", "right", "trigger", "interlock", "store", "clock"
+  std::string device;  ///< "mirror", "projector", "left", "right", "cameras", "trigger", "interlock", "store", "clock"
   std::string what;    ///< a word that device knows; hal/mock lists them
   double at_s = 0;     ///< rig time from which it may happen
   int times = 1;       ///< 0: for ever

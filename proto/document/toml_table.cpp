@@ -30,6 +30,9 @@ std::string_view type_name(const toml::node& node) {
   }
 }
 
+// "max_angle" of "max_angle_mrad".
+std::string_view stem(std::string_view key) { return key.substr(0, key.rfind('_')); }
+
 std::string shortest(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
@@ -346,7 +349,9 @@ void TomlTable::finish() {
         continue;
       }
       const std::string name = "'" + std::string(key.str()) + "'" + (what_.empty() ? "" : " in " + what_);
-      faults_->add(fail(RCode::kUnknownKey, place(node) + ": " + name + did_you_mean(key.str(), known)));
+      const bool other_unit = stem(nearest(key.str(), known)) == stem(key.str());
+      faults_->add(fail(RCode::kUnknownKey, place(node) + ": " + name + did_you_mean(key.str(), known) +
+                                                (other_unit ? " The unit is part of the name." : "")));
       return;
     }
   }

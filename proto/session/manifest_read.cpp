@@ -6,6 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "proto/document/parse.hpp"
+#include "proto/document/pattern_table.hpp"
+#include "proto/document/target_table.hpp"
 #include "proto/document/toml_table.hpp"
 #include "proto/session/file_name.hpp"
 #include "proto/session/manifest.hpp"
@@ -57,21 +60,14 @@ std::string tidy_path(std::string_view path) {
 // `shown` is the name in messages, `path` the one relative to the session's folder.
 Status read_layers(std::string_view text, const std::string& shown, const std::string& path, const Loader& load,
                    Layers& layers) {
-  toml::parse_result parsed = toml::parse(text, std::string_view(shown));
+  Result<toml::table> parsed = document::parse(text, shown);
   if (!parsed) {
-    const toml::parse_error& error = parsed.error();
-    return fail(RCode::kTomlSyntax,
-                shown + ":" + std::to_string(error.source().begin.line) + ": " + std::string(error.description()));
+    return std::move(parsed).error();
   }
-  toml::table table = std::move(parsed).table();
+  toml::table table = std::move(*parsed);
 
   Faults faults;
   TomlTable root({&table}, "", faults);
-  const std::int64_t format = root.integer("format", kAnyInteger, kFormat);
-  if (format != kFormat) {
-    root.fault(RCode::kFormatVersion, "format",
-               "is " + std::to_string(format) + ", this program knows " + std::to_string(kFormat));
-  }
   const std::vector<std::string> includes = root.texts("include");
   std::string include_line = shown + ":1";
   if (const toml::node* node = table.get("include")) {
@@ -109,56 +105,12 @@ Status read_layers(std::string_view text, const std::string& shown, const std::s
 
 int to_int(std::int64_t value) { return static_cast<int>(value); }
 
-Axis read_axis(TomlTable& table) { return table.choice("axis", {"x", "y"}) == 0 ? Axis::kX : Axis::kY; }
-
 // Names become parts of file names.
 std::string read_name(TomlTable& table, std::string_view key, const std::string& value) {
   if (value.empty() || value == "." || value == ".." || value.find('/') != std::string::npos || leaves_folder(value)) {
     table.fault(RCode::kBadValue, key, "is '" + value + "', which cannot be part of a file name");
   }
   return value;
-}
-
-PatternBlock read_block(TomlTable& table, int panel_width, int panel_height, const Faults& faults) {
-  constexpr std::array kKinds{PatternKind::kWhite, PatternKind::kBlack, PatternKind::kGray, PatternKind::kPhase};
-  PatternBlock block;
-  block.kind = kKinds.at(static_cast<std::size_t>(table.choice("kind", {"white", "black", "gray", "phase"})));
-  if (faults.any()) {
-    return block;  // without its kind, nobody knows which keys belong here
-  }
-  if (block.kind == PatternKind::kGray) {
-    block.axis = read_axis(table);
-    block.bits = to_int(table.integer("bits", {1, 16}));
-    block.stripe_px = table.number("stripe_px", {1e-3, kLargestSide}, block.stripe_px);
-    block.offset_px = table.number("offset_px", {0, kLargestSide}, block.offset_px);
-    block.inverse = table.flag("inverse", block.inverse);
-    block.inverse_first = table.flag("inverse_first", block.inverse_first);
-    block.lsb_first = table.flag("lsb_first", block.lsb_first);
-    if (block.inverse_first && !block.inverse) {
-      table.fault(RCode::kBadValue, "inverse_first", "needs 'inverse = true'");
-    }
-  } else if (block.kind == PatternKind::kPhase) {
-    block.axis = read_axis(table);
-    block.steps = to_int(table.integer("steps", {3, 64}));
-    const int length = block.axis == Axis::kX ? panel_width : panel_height;
-    if (table.has("periods")) {
-      block.period_px = length / table.number("periods", {1e-3, kLargestSide});
-      if (table.has("period_px")) {
-        table.fault(RCode::kBadValue, "periods", "says the same as 'period_px'; give one of them");
-      }
-    }
-    // Asked for in any case, so that both keys are known.
-    const std::optional<double> given = block.period_px > 0 ? std::optional(block.period_px) : std::nullopt;
-    block.period_px = table.number("period_px", {2, kLargestSide}, given);
-    block.origin_px = table.number("origin_px", {-kLargestSide, kLargestSide}, block.origin_px);
-    const std::int64_t sign = table.integer("sign", {-1, 1}, block.sign);
-    if (sign == 0) {
-      table.fault(RCode::kBadValue, "sign", "must be 1 or -1, got 0");
-    }
-    block.sign = sign < 0 ? -1 : 1;
-  }
-  table.finish();
-  return block;
 }
 
 PatternSequence read_sequence(TomlTable& root, const std::string& file, Faults& faults) {
@@ -173,7 +125,7 @@ PatternSequence read_sequence(TomlTable& root, const std::string& file, Faults& 
       root.fault(RCode::kBadValue, "sequence", "has more than " + std::to_string(kMostBlocks) + " blocks");
       break;
     }
-    sequence.blocks.push_back(read_block(table, sequence.panel_width, sequence.panel_height, faults));
+    sequence.blocks.push_back(document::read_pattern_block(table, sequence.panel_width, sequence.panel_height, faults));
   }
   if (sequence.blocks.empty()) {
     sequence.blocks.push_back({.kind = PatternKind::kWhite});
@@ -275,38 +227,8 @@ std::vector<Look> read_looks(TomlTable& root) {
   return looks;
 }
 
-const std::vector<std::string_view> kDictionaries = {
-    "4X4_50",   "4X4_100",  "4X4_250",        "4X4_1000",      "5X5_50",        "5X5_100",        "5X5_250",
-    "5X5_1000", "6X6_50",   "6X6_100",        "6X6_250",       "6X6_1000",      "7X7_50",         "7X7_100",
-    "7X7_250",  "7X7_1000", "ARUCO_ORIGINAL", "APRILTAG_16h5", "APRILTAG_25h9", "APRILTAG_36h10", "APRILTAG_36h11",
-};
-
 Target read_target(TomlTable& table, const std::vector<Look>& looks) {
-  constexpr Range<double> kSquare{1e-4, 1};
-  constexpr std::string_view kMetres = "lengths are in metres (25 mm is 0.025)";
-  Target target;
-  TargetSpec& spec = target.spec;
-  spec.kind = table.choice("kind", {"chessboard", "charuco"}) == 0 ? TargetKind::kChessboard : TargetKind::kCharuco;
-  spec.columns = to_int(table.integer("columns", {2, 1000}));
-  spec.rows = to_int(table.integer("rows", {2, 1000}));
-  if (table.has("square_m")) {
-    spec.square_m = table.number("square_m", kSquare, {}, kMetres);
-  } else {
-    table.number("square_m", kSquare, 0.0);  // without it there is no scale, which calibrate refuses
-  }
-  if (spec.kind == TargetKind::kCharuco) {
-    if (table.has("marker_m") || spec.square_m > 0) {
-      spec.marker_m = table.number("marker_m", kSquare, {}, kMetres);
-    } else {
-      table.number("marker_m", kSquare, 0.0);
-    }
-    if (spec.square_m > 0 && spec.marker_m >= spec.square_m) {
-      table.fault(RCode::kBadValue, "marker_m", "must be smaller than 'square_m'");
-    }
-    spec.dictionary = kDictionaries.at(static_cast<std::size_t>(table.choice("dictionary", kDictionaries)));
-    constexpr std::array kLayouts{CharucoLayout::kAuto, CharucoLayout::kLegacy, CharucoLayout::kCurrent};
-    spec.layout = kLayouts.at(static_cast<std::size_t>(table.choice("layout", {"auto", "legacy", "current"}, 0)));
-  }
+  Target target{.spec = document::read_target_spec(table), .looks = {}};
   target.looks = table.texts("looks");
   for (const std::string& name : target.looks) {
     if (std::ranges::find(looks, name, &Look::name) == looks.end()) {
