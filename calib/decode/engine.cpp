@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "calib/decode/depth_edges.hpp"
 #include "calib/decode/neighbours.hpp"
 
 namespace raysteer::calib::decode {
@@ -434,15 +435,23 @@ Result<CodeMap> Engine<T>::finish(CodeMap reused) {
     }
     placer.finish();
   }
+  std::vector<Placed> placed;
   for (const Axis axis : {Axis::kX, Axis::kY}) {
     if (!plan_.axis(axis).phases.empty()) {
       place_phases(axis, map);
+      placed.push_back(axis == Axis::kX ? Placed{&map.x, &map.variance_x} : Placed{&map.y, &map.variance_y});
     }
   }
   restart();
   RowCheck check(map, resemblance());
   for (int v = 0; v < height_; ++v) {
-    check.row(v);
+    check.ask_neighbours(v);
+  }
+  if (options_.neighbours && !placed.empty()) {
+    mark_depth_edges(placed, map.mask);
+  }
+  for (int v = 0; v < height_; ++v) {
+    check.settle(v);
   }
   return complete(std::move(map), check);
 }

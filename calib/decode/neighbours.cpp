@@ -103,6 +103,9 @@ RowCheck::RowCheck(CodeMap& map, const Resemblance& resemblance)
       nothing_(static_cast<std::size_t>(map.mask.width()), std::uint16_t{CodeMap::kNoCode}) {}
 
 void RowCheck::ask_neighbours(int v) {
+  if (resemblance_.fewest == 0) {
+    return;
+  }
   const int width = map_.mask.width();
   const int height = map_.mask.height();
   Rows x{}, y{};
@@ -134,11 +137,8 @@ void RowCheck::ask_neighbours(int v) {
   }
 }
 
-void RowCheck::row(int v) {
+void RowCheck::settle(int v) {
   const int width = map_.mask.width();
-  if (resemblance_.fewest > 0) {
-    ask_neighbours(v);
-  }
   std::uint8_t* mask = map_.mask.row(v);
   Counts counts;
   count_reasons(mask, width, counts);

@@ -20,8 +20,14 @@ struct Resemblance {
 class RowCheck {
  public:
   RowCheck(CodeMap& map, const Resemblance& resemblance);
-  /// Row v; codes of rows v - 1 to v + 1 and coordinates of row v must be there.
-  void row(int v);
+  /// Asks the neighbours of row v; codes of rows v - 1 to v + 1 must be there.
+  void ask_neighbours(int v);
+  /// Counts row v and takes coordinates from what is not valid. Nothing else may follow.
+  void settle(int v);
+  void row(int v) {
+    ask_neighbours(v);
+    settle(v);
+  }
 
   std::size_t valid() const { return valid_; }
   std::size_t saturated() const { return saturated_; }
@@ -29,8 +35,6 @@ class RowCheck {
   std::size_t covered() const { return covered_; }
 
  private:
-  void ask_neighbours(int v);
-
   CodeMap& map_;
   Resemblance resemblance_;
   std::vector<std::uint16_t> nothing_;  ///< codes of a row outside the image

@@ -15,6 +15,7 @@ struct Errors {
   double normalised[2] = {};  ///< mean of error^2 / predicted variance, x and y
   double rms_px[2] = {};
   double valid = 0;  ///< of the pixels that the projector lights
+  double edge = 0;   ///< of the same: left out as kEdge
   int gross = 0;     ///< beyond 1.5 px
   int gross_at_edges = 0;
 };
@@ -49,10 +50,12 @@ Errors decode_scan(const PatternSequence& sequence, std::uint64_t seed) {
   double valid = 0;
   double inside = 0;
   double lit = 0;
+  double masked = 0;
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
       const Eigen::Vector2d& truth = view.truth().x(x, y);
       lit += std::isfinite(truth.x()) ? 1 : 0;
+      masked += std::isfinite(truth.x()) && map->mask(x, y) == kEdge ? 1 : 0;
       if (map->mask(x, y) != kValid || !std::isfinite(truth.x())) {
         continue;
       }
@@ -79,10 +82,14 @@ Errors decode_scan(const PatternSequence& sequence, std::uint64_t seed) {
     errors.rms_px[axis] = std::sqrt(errors.rms_px[axis] / inside);
   }
   errors.valid = valid / lit;
+  errors.edge = masked / lit;
   return errors;
 }
 
-void expect_honest(const Errors& errors, double most_px) {
+void expect_honest(const Errors& errors, double most_px, int most_gross_at_edges) {
+  std::printf("rms %.4f %.4f px, normalised %.3f %.3f, valid %.4f, edge %.4f, gross %d, at edges %d\n",
+              errors.rms_px[0], errors.rms_px[1], errors.normalised[0], errors.normalised[1], errors.valid, errors.edge,
+              errors.gross, errors.gross_at_edges);
   for (const int axis : {0, 1}) {
     const double ratio = 1 / std::sqrt(errors.normalised[axis]);  // predicted / observed sigma, algorithms 2.7
     EXPECT_GT(ratio, 0.8) << "axis " << axis;
@@ -90,21 +97,31 @@ void expect_honest(const Errors& errors, double most_px) {
     EXPECT_LT(errors.rms_px[axis], most_px) << "axis " << axis;
     EXPECT_GT(errors.rms_px[axis], 0.005) << "axis " << axis;
   }
-  std::printf("rms %.4f %.4f px, normalised %.3f %.3f, valid %.3f, gross %d, at edges %d\n", errors.rms_px[0],
-              errors.rms_px[1], errors.normalised[0], errors.normalised[1], errors.valid, errors.gross,
-              errors.gross_at_edges);
-  EXPECT_GT(errors.valid, 0.93);
   EXPECT_LE(errors.gross, 2);
-  // Of some 70 000. Goal 2.7 asks 1e-4; over 360 random rigs the median is 35, 99 % have at most 99, the worst had 139.
-  EXPECT_LE(errors.gross_at_edges, 160);
+  EXPECT_LE(errors.gross_at_edges, most_gross_at_edges);
+}
+
+/// Goal 2.7 asks for 1e-4 of some 70 000 pixels, 7. Over 360 random rigs the median is 0, 90 % have at most 2, 99 % at
+/// most 10, the worst 36: a dark face of three pixels that the lens mixes through and through.
+constexpr int kMostAtEdges = 50;
+
+/// What is left out at depth edges is little, but not nothing.
+void expect_clean_edges(const Errors& errors) {
+  EXPECT_GT(errors.valid, 0.99);
+  EXPECT_GT(errors.edge, 0.0005);
+  EXPECT_LT(errors.edge, 0.006);
 }
 
 TEST(RenderedScene, default_set_is_as_good_as_it_says_in_both_directions) {
-  expect_honest(decode_scan(synth::half_period_sequence(320, 200, true), support::seed()), 0.08);
+  const Errors errors = decode_scan(synth::half_period_sequence(320, 200, true), support::seed());
+  expect_honest(errors, 0.08, kMostAtEdges);
+  expect_clean_edges(errors);
 }
 
 TEST(RenderedScene, fast_set_is_as_good_as_it_says_in_both_directions) {
-  expect_honest(decode_scan(synth::half_period_sequence(320, 200, false, 4), support::seed()), 0.12);
+  const Errors errors = decode_scan(synth::half_period_sequence(320, 200, false, 4), support::seed());
+  expect_honest(errors, 0.12, kMostAtEdges);
+  expect_clean_edges(errors);
 }
 
 TEST(RenderedScene, pure_gray_code_is_as_good_as_it_says_in_both_directions) {
@@ -116,7 +133,10 @@ TEST(RenderedScene, pure_gray_code_is_as_good_as_it_says_in_both_directions) {
   sequence.blocks.push_back(gray);
   sequence.blocks.emplace_back().kind = PatternKind::kWhite;
   sequence.blocks.emplace_back().kind = PatternKind::kBlack;
-  expect_honest(decode_scan(sequence, support::seed()), 0.2);
+  const Errors errors = decode_scan(sequence, support::seed());
+  // No coordinates are asked for depth edges here (median 16 over 360 random rigs, worst 119).
+  expect_honest(errors, 0.2, 160);
+  EXPECT_GT(errors.valid, 0.99);
 }
 
 }  // namespace
