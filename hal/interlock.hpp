@@ -21,9 +21,9 @@ class Interlock {
   virtual ~Interlock() = default;
 
   /// Any thread; never blocks. kDeviceUnavailable: the loop cannot be read, which counts as open.
-  Result<InterlockState> state() { return do_state(); }
+  Result<InterlockState> state();
 
-  /// Feeds the watchdog: "the software is alive". Not fed in time, the loop opens by itself.
+  /// Feeds the watchdog: "the software is alive". Not fed in time, the loop opens by itself until reset().
   /// kDeviceUnavailable; kInterlockTripped: tripped, feeding no longer helps.
   Status feed();
 

@@ -53,6 +53,8 @@ class PatternPlayer {
   Result<PlayerState> state() { return do_state(); }
 
  private:
+  Status refuse_while_playing();
+
   virtual Status do_trigger_output(bool on) = 0;
   virtual Status do_play(const PatternRun& run) = 0;
   virtual Status do_stop() = 0;

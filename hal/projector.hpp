@@ -57,11 +57,12 @@ class Projector {
   /// Switches the light source. On is refused with kInterlockOpen unless the interlock is closed; an interlock that
   /// cannot be read is open. Off always reaches the device. kDeviceUnavailable.
   Status light(bool on);
-  /// Asked for, and the interlock is closed.
+  /// Asked for, and the interlock has been closed ever since: once it opened, light stays off until asked for again.
   bool light_is_on();
 
   /// Replaces the stored patterns; may take seconds on a real device, and shows nothing meanwhile.
-  /// kBadSequence; kPanelSize: the sequence is for another panel; kDeviceUnavailable; kDeviceFull.
+  /// kBadSequence; kPanelSize: the sequence is for another panel; kProjectorBusy: patterns are playing;
+  /// kDeviceUnavailable; kDeviceFull. When it fails, the old patterns are still there.
   Status load(const PatternSequence& sequence);
   const PatternSequence& loaded() const { return sequence_; }
 
@@ -83,6 +84,8 @@ class Projector {
   const Clock& clock() const { return clock_; }
 
  private:
+  Status check_stored(const Shown& what) const;
+
   virtual Status do_light(bool on) = 0;
   virtual Status do_load(const PatternSequence& sequence) = 0;
   virtual Status do_store(int number, ImageView<const std::uint8_t> picture) = 0;
@@ -94,7 +97,7 @@ class Projector {
   ProjectorPanel panel_;
   PatternSequence sequence_;
   std::vector<bool> stored_ = std::vector<bool>(256, false);
-  bool asked_on_ = false;
+  std::optional<RigTime> lit_since_;
 };
 
 }  // namespace raysteer::hal

@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 
@@ -76,7 +75,8 @@ class StereoCamera {
   /// Sets both eyes and reads back. Streaming must be stopped.
   /// kBadValue: exposure or gain outside what the cameras can do; kCameraSerial: an eye is not the camera the board
   /// file binds (swapped cables are said as such); kCameraStreaming; kDeviceUnavailable; kCameraSettings: what was
-  /// read back differs from what was asked.
+  /// read back differs from what was asked by more than 1 % + 1 us of exposure or 0.1 dB. After any error but
+  /// kCameraStreaming, kBadValue and kCameraSerial the cameras count as not configured.
   Status configure(const CameraSettings& settings);
   const std::optional<CameraSettings>& settings() const { return settings_; }
 
@@ -92,6 +92,8 @@ class StereoCamera {
   Result<std::optional<FramePair>> next_pair(RigTime now);
 
  private:
+  Status check_serials(const std::array<CameraInfo, 2>& found) const;
+
   virtual Result<CameraInfo> do_info(Eye eye) = 0;
   virtual Result<CameraSettings> do_configure(Eye eye, const CameraSettings& settings) = 0;  ///< returns what it reads
   virtual Status do_start() = 0;
@@ -102,7 +104,7 @@ class StereoCamera {
   Pairing pairing_;
   std::optional<CameraSettings> settings_;
   bool streaming_ = false;
-  std::array<std::deque<EyeFrame>, 2> waiting_;
+  std::array<std::optional<EyeFrame>, 2> waiting_;  ///< the next of each eye, until its partner is there
 };
 
 }  // namespace raysteer::hal

@@ -49,6 +49,8 @@ class Trigger {
   Result<std::vector<TriggerEdge>> edges();
 
  private:
+  Status check_armed() const;
+
   virtual Status do_arm(TriggerSource source) = 0;
   virtual Status do_disarm() = 0;
   virtual Status do_fire(RigTime at) = 0;

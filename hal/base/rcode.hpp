@@ -30,7 +30,7 @@ enum class ErrorCode {
 };
 
 /// Hundreds group by the way of the light: 1 files and sessions, 2 decoding, 3 calibration, 4 scanning, 5 the tool
-/// itself. A number is never used for another fault later.
+/// itself, 6 devices, 7 capture, 8 the pretend world. A number is never used for another fault later.
 enum class RCode : int {
   kNone = 0,
 
@@ -91,6 +91,27 @@ enum class RCode : int {
   kNothingToReport = 505,
   kInternal = 506,
   kTargetDoesNotFit = 507,
+
+  // 06xx devices
+  kDeviceUnavailable = 601,
+  kTooLate = 602,
+  kMirrorOutOfRange = 603,
+  kMirrorSensor = 604,
+  kInterlockOpen = 605,
+  kInterlockTripped = 606,
+  kPanelSize = 607,
+  kNothingStored = 608,
+  kProjectorBusy = 609,
+  kDeviceFull = 610,
+  kNotArmed = 611,
+  kNotConfigured = 612,
+  kCameraSerial = 613,
+  kCameraStreaming = 614,
+  kCameraSettings = 615,
+  kBandwidth = 616,
+  kBlobMissing = 617,
+  kDataLoss = 618,
+  kStoreReadOnly = 619,
 };
 
 struct Explanation {
