@@ -43,7 +43,7 @@ struct LightSpan {
   int first_row = 0;                            ///< panel rows this is true of: a torn frame is two spans of one time
   int end_row = 0;
   double power = 1;     ///< of the lamp, 1 when warm
-  ProjectorPx drift{};  ///< the picture stands so far from where it stood when cold
+  ProjectorPx drift{};  ///< the picture stands so far from where it stood at rig time 0
   MirrorAngles mirror;  ///< where the mirror truly is, mechanical, in the middle of the span
 };
 
