@@ -112,6 +112,16 @@ enum class RCode : int {
   kBlobMissing = 617,
   kDataLoss = 618,
   kStoreReadOnly = 619,
+
+  // 08xx the pretend world
+  kMeshMissing = 801,
+  kMeshSyntax = 802,
+  kMeshEmpty = 803,
+  kMeshNotFinite = 804,
+  kMeshIndex = 805,
+  kTextureMissing = 806,
+  kTextureFormat = 807,
+  kBadPrepare = 808,
 };
 
 struct Explanation {

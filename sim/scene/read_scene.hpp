@@ -10,9 +10,9 @@
 
 namespace raysteer::sim::scene {
 
-/// Reads `text`; meshes and pictures are looked for beside `file`. Errors name file, line and what was expected:
-/// kTomlSyntax, kFormatVersion, kUnknownKey, kMissingKey, kBadValue, kPathOutside, and for a mesh or picture
-/// kMeshMissing, kMeshSyntax, kMeshEmpty, kMeshNotFinite, kMeshIndex, kTextureMissing, kTextureFormat.
+/// Reads `text`; the scene it includes, meshes and pictures are looked for beside `file`. Errors name file, line and
+/// what was expected: kTomlSyntax, kFormatVersion, kUnknownKey, kMissingKey, kBadValue, kPathOutside, and for a mesh or
+/// picture kMeshMissing, kMeshSyntax, kMeshEmpty, kMeshNotFinite, kMeshIndex, kTextureMissing, kTextureFormat.
 Result<Scene> read_scene(std::string_view text, const std::filesystem::path& file);
 
 /// The same from a file. Also kFileMissing, kFileUnreadable.

@@ -26,10 +26,14 @@ struct Material {
   std::optional<Texture> texture;
 };
 
+/// Where a person has put the target: held in pose 1, 2, ..., or
+inline constexpr int kTargetAway = -1;
+inline constexpr int kTargetOnFloor = 0;
+
 /// The moment a picture of the room is taken. What a person was told to do is part of it.
 struct Moment {
   RigTime time{};
-  int target_pose = 0;  ///< target_pose() of a plan's `prepare`
+  int target_pose = kTargetAway;  ///< Scene::target_pose() of a plan's `prepare`
 };
 
 /// Where a moving thing is at a time; in between it walks straight. Before the first it stands at the first.
@@ -45,10 +49,11 @@ struct Surface {
   Eigen::Isometry3d T_room_surface = Eigen::Isometry3d::Identity();
   double appears_s = 0;
   double vanishes_s = std::numeric_limits<double>::infinity();
-  std::vector<Waypoint> path;  ///< not empty: it moves; added to T_room_surface's place
+  std::vector<Waypoint> path;  ///< not empty: it moves; added to T_room_surface's translation
   bool path_repeats = false;
+  bool is_target = false;
+  bool rests = false;                           ///< a target: kTargetOnFloor is at T_room_surface
   std::vector<Eigen::Isometry3d> T_room_poses;  ///< a target: where it is held in pose 1, 2, ...
-  bool rests = true;                            ///< a target: in pose 0 it is at T_room_surface, else away
 
   bool moves() const { return !path.empty(); }
   /// Where it is at a moment; nothing when it is not in the room.
@@ -74,9 +79,9 @@ struct Scene {
   std::vector<Surface> surfaces;
   std::vector<PlacedTarget> targets;  ///< their frame: first inner corner, x along columns, y along rows, z into it
 
-  /// The pose a plan's `prepare` asks for: "" 0; "target pose 3" 3; "target away" -1. kBadPrepare: something else, or a
-  /// pose no target of this scene has.
-  Result<int> target_pose(std::string_view prepare) const;
+  /// What a plan's `prepare` asks of whoever holds the target, which is `now` somewhere: "" changes nothing; "target
+  /// pose 3", "target on floor", "target away". kBadPrepare: something else, or what no target of this scene can do.
+  Result<int> target_pose(std::string_view prepare, int now = kTargetAway) const;
 };
 
 /// The surfaces present at a moment as flat arrays in the room frame, for a ray tracer.
