@@ -1,5 +1,6 @@
 #include "sim/optics/lens.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
