@@ -290,7 +290,8 @@ int Engine<T>::line_place(Axis axis, int line) const {
   const int together = axis == Axis::kX ? 1 : kColumnsTogether;
   const int count = lines(axis);
   const int groups = (count + together - 1) / together;
-  return std::min(static_cast<int>((line / together + 0.5) * size / groups) - together / 2 + line % together, size - 1);
+  const int group = line / together;
+  return std::min(static_cast<int>((group + 0.5) * size / groups) - together / 2 + line % together, size - 1);
 }
 
 template <class T>
