@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "calib/decode/code_map.hpp"
+#include "calib/decode/find_borders.hpp"
 
 namespace raysteer::calib::decode {
 namespace {

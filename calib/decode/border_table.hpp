@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "calib/decode/gray_rows.hpp"
+#include "calib/decode/classify.hpp"
 #include "calib/decode/gray_sums.hpp"
 
 namespace raysteer::calib::decode {

@@ -28,13 +28,14 @@ struct Around {
 
 /// Bit k of `straight` stays where direction k is straight along this axis, too.
 RAYSTEER_CLONES void keep_straight(const Around& around, int count, std::int32_t* __restrict straight) {
-  const auto bit = [&around](int i, int down, int right, int direction) {
-    const float* at = around.value[kReach] + i;
-    const float* next = around.value[static_cast<std::size_t>(kReach + down)] + i + right;
-    const float* far = around.value[static_cast<std::size_t>(kReach + 2 * down)] + i + 2 * right;
-    const float* at_variance = around.variance[kReach] + i;
-    const float* next_variance = around.variance[static_cast<std::size_t>(kReach + down)] + i + right;
-    const float* far_variance = around.variance[static_cast<std::size_t>(kReach + 2 * down)] + i + 2 * right;
+  const auto row = [](const std::array<const float*, kRows>& rows, int k) { return rows[static_cast<std::size_t>(k)]; };
+  const auto bit = [&](int i, int down, int right, int direction) {
+    const float* at = row(around.value, kReach) + i;
+    const float* next = row(around.value, kReach + down) + i + right;
+    const float* far = row(around.value, kReach + 2 * down) + i + 2 * right;
+    const float* at_variance = row(around.variance, kReach) + i;
+    const float* next_variance = row(around.variance, kReach + down) + i + right;
+    const float* far_variance = row(around.variance, kReach + 2 * down) + i + 2 * right;
     const float bend = *at - 2 * *next + *far;
     const float limit = kStraightPx * kStraightPx +
                         kStraightSigma * kStraightSigma * (*at_variance + 4 * *next_variance + *far_variance);

@@ -1,68 +1,27 @@
 #include "calib/decode/engine.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
-#include "calib/decode/depth_edges.hpp"
-#include "calib/decode/neighbours.hpp"
+#include "calib/decode/bit_roles.hpp"
+#include "calib/decode/median.hpp"
+#include "calib/decode/phase_axis.hpp"
 
 namespace raysteer::calib::decode {
 namespace {
 
-/// Noise is estimated from a grid of at most this many pixels: enough for 1 % at each of 16 signal levels.
-constexpr int kNoiseColumns = 256;
-constexpr int kNoiseRows = 64;
-/// Lines across the stripes from which the borders' places are learnt: each border is crossed by most of them.
-constexpr int kSampledLines = 96;
-constexpr int kColumnsTogether = 32;
 /// Rows whose sums stay in the second-level cache: 4 x 2048 x 20 bytes.
 constexpr int kBandRows = 4;
 /// Where the frames tell nothing about their noise: a camera of 1.5 DN and 40 electrons a DN.
 constexpr double kUsualReadSigma = 1.5;
 constexpr double kUsualElectrons = 40;
-/// Stripes at least this wide show direct light even where the projector is blurred by 2 px.
-constexpr double kDirectStripe = 8;
 /// A pixel needs this many like it of 8 neighbours: the side of a depth edge has at least three.
 constexpr int kFewestNeighbours = 3;
-/// A half period from Gray and the phase may disagree by this share of a period before the pixel is ambiguous.
-constexpr double kMaxDisagreement = 0.45;
-/// A residual above this many times what noise and the projector's harmonics explain is no sinusoid (algorithms 2.5).
-constexpr double kMaxChi2 = 9;
 /// Noise of phases is looked for where there is light of at least this amplitude, DN of 255.
 constexpr double kLitModulation = 2;
 
-/// Stripes of bit b are 2^(b+1) codes wide, but for the most significant.
-double stripe_of(const PatternBlock& block, int bit) { return std::ldexp(block.stripe_px, bit + 1); }
-
-/// The two finest bits with resolved stripes show direct light; those above them are coarse.
-std::vector<BitRole> roles_of(const PatternBlock& block) {
-  std::vector<BitRole> roles(static_cast<std::size_t>(block.bits));
-  int first = 0;
-  while (first + 2 < block.bits && stripe_of(block, first) < kDirectStripe) {
-    ++first;
-  }
-  for (int bit = 0; bit < block.bits; ++bit) {
-    roles[bit] = {.bit = bit, .direct = bit == first || bit == first + 1, .coarse = bit > first + 1};
-  }
-  return roles;
-}
-
-int codes_of(const PatternBlock& block, int panel) {
-  return static_cast<int>(std::ceil((panel + block.offset_px) / block.stripe_px));
-}
-
 std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
-
-float median(std::vector<float>& values) {
-  if (values.empty()) {
-    return std::numeric_limits<float>::quiet_NaN();
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -89,8 +48,8 @@ void Engine<T>::restart() {
   waiting_.clear();
   estimate_ = NoiseEstimate(full_scale_);
   harmonics_ = 0;
-  gray_x_.sampled.clear();
-  gray_y_.sampled.clear();
+  gray_x_.noise.clear();
+  gray_y_.noise.clear();
   for (PhaseSums& phase : phases_) {
     phase.clear();
   }
@@ -113,8 +72,7 @@ void Engine<T>::start(Axis axis, int rows) {
   GrayState& state = gray(axis);
   state.store = GrayStore<T>(width_, rows);
   state.store.clear_rows(0, rows);
-  state.lines = GrayStore<T>(axis == Axis::kX ? width_ : height_, lines(axis));
-  state.lines.clear_rows(0, lines(axis));
+  state.lines = places_borders(plan_.axis(axis)) ? LineSamples<T>(axis, width_, height_) : LineSamples<T>();
 }
 
 template <class T>
@@ -212,8 +170,7 @@ void Engine<T>::fold_frame(Axis axis, int bit, ImageView<const T> p, ImageView<c
   for (int y = 0; y < height_; ++y) {
     fold(role, p.row(y), q.row(y), width_, gray(axis).store.row(y));
   }
-  sample_noise(axis, role, p, q);
-  sample_lines(axis, role, p, q);
+  sample(axis, role, p, q);
 }
 
 template <class T>
@@ -238,107 +195,21 @@ T Engine<T>::inverse_of(T pattern, int sum) const {
 }
 
 template <class T>
-void Engine<T>::sample_noise(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
-  // Pattern plus inverse is white plus black, whatever the bit: from one coarse bit to the next only noise changes, and
-  // some global light, which a neighbouring pixel shares. A pattern without inverse is compared with the last coarse
-  // one that was as bright.
-  if (!role.coarse) {
-    return;
-  }
+void Engine<T>::sample(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
+  const AxisPlan& plan = plan_.axis(axis);
   GrayState& state = gray(axis);
-  const bool pairs = plan_.axis(axis).gray->inverse;
-  const auto saturated = static_cast<int>(options_.saturation * full_scale_);
-  const int step_x = (width_ + kNoiseColumns - 1) / kNoiseColumns;
-  const int step_y = (height_ + kNoiseRows - 1) / kNoiseRows;
-  const int columns = (width_ - 1) / step_x;
-  const int rows = (height_ + step_y - 1) / step_y;
-  constexpr int kUnknown = -1;
-  // Two pixels side by side, each unlit and lit; pairs use the first of the two only.
-  state.sampled.resize(4 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), kUnknown);
-  int* before = state.sampled.data();
-  for (int y = 0; y < height_; y += step_y) {
-    for (int k = 0; k < columns; ++k, before += 4) {
-      const int x = step_x * k;
-      if (std::max({p(x, y), q(x, y), p(x + 1, y), q(x + 1, y)}) >= saturated) {
-        continue;
-      }
-      const bool lit = p(x, y) > q(x, y);
-      if (!pairs && lit != (p(x + 1, y) > q(x + 1, y))) {
-        continue;
-      }
-      int* last = before + (!pairs && lit ? 2 : 0);
-      const int here = pairs ? p(x, y) + q(x, y) : p(x, y);
-      const int beside = pairs ? p(x + 1, y) + q(x + 1, y) : p(x + 1, y);
-      if (last[0] != kUnknown) {
-        estimate_.add(pairs ? 0.5 * here : here, here - last[0] - (beside - last[1]), pairs ? 8 : 4);
-      }
-      last[0] = here;
-      last[1] = beside;
-    }
+  if (role.coarse) {
+    state.noise.add(p, q, plan.gray->inverse, static_cast<int>(options_.saturation * full_scale_), estimate_);
   }
-}
-
-template <class T>
-int Engine<T>::lines(Axis axis) const {
-  return std::min(kSampledLines, axis == Axis::kX ? height_ : width_);
-}
-
-template <class T>
-int Engine<T>::line_place(Axis axis, int line) const {
-  // Rows one by one; columns some together, which share cache lines.
-  const int size = axis == Axis::kX ? height_ : width_;
-  const int together = axis == Axis::kX ? 1 : kColumnsTogether;
-  const int count = lines(axis);
-  const int groups = (count + together - 1) / together;
-  return std::min(static_cast<int>((line / together + 0.5) * size / groups) - together / 2 + line % together, size - 1);
-}
-
-template <class T>
-void Engine<T>::sample_lines(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q) {
-  if (!options_.sub_pixel || !plan_.axis(axis).phases.empty()) {
-    return;
-  }
-  GrayState& state = gray(axis);
-  const int count = lines(axis);
-  if (axis == Axis::kX) {
-    for (int line = 0; line < count; ++line) {
-      const int row = line_place(axis, line);
-      fold(role, p.row(row), q.row(row), width_, state.lines.row(line));
-    }
-    return;
-  }
-  state.line_p.resize(static_cast<std::size_t>(height_) * kColumnsTogether);
-  state.line_q.resize(state.line_p.size());
-  for (int first = 0; first < count; first += kColumnsTogether) {
-    const int together = std::min(kColumnsTogether, count - first);
-    const int column = line_place(axis, first);
-    for (int v = 0; v < height_; ++v) {
-      const T* p_row = p.row(v);
-      const T* q_row = q.row(v);
-      for (int k = 0; k < together; ++k) {
-        const int u = std::min(column + k, width_ - 1);
-        state.line_p[static_cast<std::size_t>(k) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(v)] =
-            p_row[u];
-        state.line_q[static_cast<std::size_t>(k) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(v)] =
-            q_row[u];
-      }
-    }
-    for (int k = 0; k < together; ++k) {
-      const std::ptrdiff_t start = static_cast<std::ptrdiff_t>(k) * height_;
-      fold(role, state.line_p.data() + start, state.line_q.data() + start, height_, state.lines.row(first + k));
-    }
+  if (places_borders(plan)) {
+    state.lines.add(role, p, q);
   }
 }
 
 template <class T>
 BorderTable Engine<T>::learn(Axis axis) {
   const AxisPlan& plan = plan_.axis(axis);
-  if (!options_.sub_pixel || !plan.phases.empty()) {
-    return {};
-  }
-  GrayLimits line_limits = limits(plan);
-  line_limits.width = axis == Axis::kX ? width_ : height_;
-  return learn_borders(gray(axis).lines, lines(axis), line_limits);
+  return places_borders(plan) ? gray(axis).lines.learn(limits(plan)) : BorderTable();
 }
 
 template <class T>
@@ -438,8 +309,7 @@ Result<CodeMap> Engine<T>::finish(CodeMap reused) {
   std::vector<Placed> placed;
   for (const Axis axis : {Axis::kX, Axis::kY}) {
     if (!plan_.axis(axis).phases.empty()) {
-      place_phases(axis, map);
-      placed.push_back(axis == Axis::kX ? Placed{&map.x, &map.variance_x} : Placed{&map.y, &map.variance_y});
+      placed.push_back(place_phases(axis, map));
     }
   }
   restart();
@@ -478,8 +348,7 @@ typename Engine<T>::Placers Engine<T>::make_placers(CodeMap& map) {
     const bool x = axis == Axis::kX;
     BorderTable borders = learn(axis);
     (x ? map.diagnostics.border_displacement_x : map.diagnostics.border_displacement_y) = borders.displacement;
-    // Where a phase refines the code, it alone places the pixel.
-    const bool place = options_.sub_pixel && plan.phases.empty();
+    const bool place = places_borders(plan);
     placers.emplace_back(axis, GrayAxis<T>(axis, *plan.gray, limits(plan), std::move(borders), height_,
                                            x ? map.code_x : map.code_y, place ? (x ? &map.x : &map.y) : nullptr,
                                            place ? (x ? &map.variance_x : &map.variance_y) : nullptr));
@@ -488,88 +357,22 @@ typename Engine<T>::Placers Engine<T>::make_placers(CodeMap& map) {
 }
 
 template <class T>
-void Engine<T>::place_phases(Axis which, CodeMap& map) {
-  const AxisPlan& axis = plan_.axis(which);
+Placed Engine<T>::place_phases(Axis which, CodeMap& map) {
+  const PhaseLimits limits{.noise = noise_,
+                           .harmonics = harmonics_,
+                           .saturation = options_.saturation * full_scale_,
+                           .min_modulation = dn(options_.min_modulation_dn),
+                           .min_sigma = options_.min_sigma,
+                           .max_sigma_px = options_.max_sigma_px,
+                           .max_order_residual = options_.max_order_residual};
   const bool along_x = which == Axis::kX;
   Image<float>& value = along_x ? map.x : map.y;
   Image<float>& variance = along_x ? map.variance_x : map.variance_y;
-  Image<std::uint16_t>& code = along_x ? map.code_x : map.code_y;
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  const double saturated = options_.saturation * full_scale_;
-  const double least_modulation = dn(options_.min_modulation_dn);
-  std::vector<float> residuals;
-  std::size_t covered = 0;
-  std::vector<double> places(axis.phases.size()), periods(axis.phases.size()), variances(axis.phases.size());
-  for (std::size_t i = 0; i < axis.phases.size(); ++i) {
-    periods[i] = plan_.phases[axis.phases[i]].period_px;
-  }
-  for (int v = 0; v < height_; ++v) {
-    for (int u = 0; u < width_; ++u) {
-      std::uint8_t reasons = 0;
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        const PhaseSums& sums = phases_[axis.phases[i]];
-        const PhaseSums::Pixel pixel = sums.pixel(u, v);
-        const double noise = noise_.variance(pixel.mean);
-        places[i] = pixel.place;
-        variances[i] = sums.variance(pixel, noise_);
-        if (pixel.peak >= saturated) {
-          reasons |= kSaturated;
-        }
-        if (pixel.modulation < least_modulation ||
-            pixel.modulation * pixel.modulation < options_.min_sigma * options_.min_sigma * noise) {
-          reasons |= kLowModulation;
-        }
-        if (pixel.residual > kMaxChi2 * (noise + harmonics_ * pixel.modulation * pixel.modulation)) {
-          reasons |= kAmbiguous;
-        }
-      }
-      covered += (reasons & (kSaturated | kLowModulation)) == 0 ? 1 : 0;
-      double place = 0;
-      if (axis.gray) {
-        // Half periods order the phase (algorithms 2.4).
-        const std::uint16_t stripe = code(u, v);
-        const double rough = (stripe + 0.5) * axis.gray->stripe_px - axis.gray->offset_px - 0.5;
-        place = nearest_period(places[0], periods[0], rough);
-        if (stripe == CodeMap::kNoCode || std::abs(place - rough) > kMaxDisagreement * periods[0]) {
-          reasons |= kAmbiguous;
-        }
-      } else {
-        const Heterodyne found = heterodyne(places, periods, axis.panel);
-        place = found.place;
-        if (places.size() > 1) {
-          if ((reasons & (kSaturated | kLowModulation)) == 0) {
-            residuals.push_back(static_cast<float>(found.residual));
-          }
-          if (found.residual > options_.max_order_residual) {
-            reasons |= kAmbiguous;
-          }
-        }
-      }
-      // Each period measures the same coordinate; they are weighted by what they know.
-      double weights = 0;
-      double sum = 0;
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        weights += 1 / variances[i];
-        sum += nearest_period(places[i], periods[i], place) / variances[i];
-      }
-      place = sum / weights;
-      if (1 / weights > options_.max_sigma_px * options_.max_sigma_px) {
-        reasons |= kLowModulation;
-      }
-      if (place < -1 || place > axis.panel) {
-        reasons |= kOutside;
-      }
-      map.mask(u, v) |= reasons;
-      const bool valid = reasons == 0;
-      value(u, v) = valid ? static_cast<float>(place) : kNan;
-      variance(u, v) = valid ? static_cast<float>(1 / weights) : kNan;
-      code(u, v) = valid
-                       ? static_cast<std::uint16_t>(std::clamp(static_cast<int>(std::lround(place)), 0, axis.panel - 1))
-                       : CodeMap::kNoCode;
-    }
-  }
-  (along_x ? map.diagnostics.order_residual_x : map.diagnostics.order_residual_y) = median(residuals);
-  map.diagnostics.coverage = static_cast<double>(covered) / static_cast<double>(map.mask.size());
+  const PhaseFindings findings = decode::place_phases(plan_.axis(which), phases_, limits,
+                                                      {value, variance, along_x ? map.code_x : map.code_y, map.mask});
+  (along_x ? map.diagnostics.order_residual_x : map.diagnostics.order_residual_y) = findings.order_residual;
+  map.diagnostics.coverage = static_cast<double>(findings.covered) / static_cast<double>(map.mask.size());
+  return {&value, &variance};
 }
 
 template <class T>
@@ -629,8 +432,7 @@ Result<CodeMap> Engine<T>::decode(std::span<const ImageView<const T>> frames, Co
   }
   for (const Pair& pair : pairs) {
     const BitRole& role = gray(pair.axis).roles[pair.bit];
-    sample_noise(pair.axis, role, pair.p, pair.q);
-    sample_lines(pair.axis, role, pair.p, pair.q);
+    sample(pair.axis, role, pair.p, pair.q);
   }
   fit_noise();
   CodeMap map = make_map(std::move(reused));

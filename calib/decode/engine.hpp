@@ -7,10 +7,13 @@
 
 #include "calib/decode/code_map.hpp"
 #include "calib/decode/decoder.hpp"
+#include "calib/decode/depth_edges.hpp"
 #include "calib/decode/gray_axis.hpp"
 #include "calib/decode/gray_sums.hpp"
+#include "calib/decode/line_samples.hpp"
 #include "calib/decode/neighbours.hpp"
 #include "calib/decode/noise.hpp"
+#include "calib/decode/noise_samples.hpp"
 #include "calib/decode/phase_rows.hpp"
 #include "calib/decode/plan.hpp"
 
@@ -30,9 +33,8 @@ class Engine {
   struct GrayState {
     std::vector<BitRole> roles;  ///< by bit
     GrayStore<T> store;
-    GrayStore<T> lines;  ///< sums of sampled lines across the stripes
-    std::vector<T> line_p, line_q;
-    std::vector<int> sampled;  ///< what the coarse bit before showed at the sampled pixels
+    LineSamples<T> lines;
+    NoiseSamples noise;
   };
 
   struct Pair {
@@ -51,10 +53,9 @@ class Engine {
   void fold_threshold(const Pattern& pattern, ImageView<const T> frame);
   void fold_waiting();
   bool threshold_known(const Pattern& pattern) const;
-  void sample_noise(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q);
-  void sample_lines(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q);
-  int lines(Axis axis) const;
-  int line_place(Axis axis, int line) const;
+  /// Borders place the pixels of an axis unless phases do.
+  bool places_borders(const AxisPlan& axis) const { return options_.sub_pixel && axis.phases.empty(); }
+  void sample(Axis axis, const BitRole& role, ImageView<const T> p, ImageView<const T> q);
   void sample_phase_noise(const PhaseSums& sums);
   GrayLimits limits(const AxisPlan& axis) const;
   BorderTable learn(Axis axis);
@@ -64,7 +65,7 @@ class Engine {
   void fit_noise();
   Placers make_placers(CodeMap& map);
   T inverse_of(T pattern, int sum) const;
-  void place_phases(Axis which, CodeMap& map);
+  Placed place_phases(Axis which, CodeMap& map);
   Resemblance resemblance() const;
   Result<CodeMap> complete(CodeMap map, const RowCheck& rows) const;
   double dn(double of_255) const { return of_255 * full_scale_ / 255; }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/decode/place_pixels.hpp"
+
 namespace raysteer::calib::decode {
 namespace {
 

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "calib/decode/border_table.hpp"
+#include "calib/decode/classify.hpp"
 #include "calib/decode/code_map.hpp"
-#include "calib/decode/gray_rows.hpp"
+#include "calib/decode/find_borders.hpp"
 #include "hal/base/pattern.hpp"
 
 namespace raysteer::calib::decode {

@@ -7,16 +7,6 @@
 namespace raysteer::calib::decode {
 namespace {
 
-// Not std::min and std::max: references keep GCC 12 from vectorising.
-template <class T>
-[[gnu::always_inline]] inline T lesser(T a, T b) {
-  return a < b ? a : b;
-}
-template <class T>
-[[gnu::always_inline]] inline T greater(T a, T b) {
-  return a < b ? b : a;
-}
-
 /// One pass over the row for all sums that a bit goes into. What it is for is known at compile time.
 template <class T, bool kFinest, bool kDirect, bool kCoarse>
 [[gnu::always_inline]] inline void fold_row(int bit, const T* __restrict p, const T* __restrict q, int count,

@@ -31,6 +31,11 @@ struct GraySums {
 /// panel that taking one for the other is found out by the code.
 constexpr int kMostLabel = 128;
 constexpr int label(int bit) { return bit >= 8 ? kMostLabel : (1 << bit) >> 1; }
+/// Of the bit that border n, between codes n - 1 and n, changes.
+constexpr int border_label(int n) {
+  const int lowest = (n & -n) >> 1;
+  return lowest < kMostLabel ? lowest : kMostLabel;
+}
 
 /// Which of the sums a bit goes into.
 struct BitRole {

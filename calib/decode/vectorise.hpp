@@ -22,3 +22,17 @@
 #else
 #define RAYSTEER_INDEPENDENT _Pragma("GCC ivdep")
 #endif
+
+namespace raysteer::calib::decode {
+
+/// Not std::min and std::max: references keep GCC 12 from vectorising.
+template <class T>
+[[gnu::always_inline]] inline T lesser(T a, T b) {
+  return a < b ? a : b;
+}
+template <class T>
+[[gnu::always_inline]] inline T greater(T a, T b) {
+  return a < b ? b : a;
+}
+
+}  // namespace raysteer::calib::decode

@@ -1,4 +1,4 @@
-#include "calib/decode/gray_rows.hpp"
+#include "calib/decode/classify.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ struct RandomRow {
   }
 };
 
-TEST(GrayRows, a_row_is_classified_as_each_of_its_pixels_by_itself) {
+TEST(Classify, a_row_is_classified_as_each_of_its_pixels_by_itself) {
   // Single pixels fill no register, so the portable loop does them on every processor.
   const GrayLimits usual{.difference_floor = 5.3F, .difference_slope = 0.0251F, .min_contrast = 12.5F, .codes = 60000};
   GrayLimits coarse = usual;
