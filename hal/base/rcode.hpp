@@ -77,6 +77,8 @@ enum class RCode : int {
   kBadCalibrationFile = 311,
   kNotFinite = 312,
   kCameraCount = 313,
+  kDiscsNotFound = 314,
+  kLookNotSolved = 315,
 
   // 04xx scanning
   kTooFewMatches = 401,
