@@ -7,6 +7,7 @@ namespace raysteer::host::cli {
 const CommandTable& all_commands() {
   // clang-format off: one row a line
   static constexpr std::array kCommands{
+      CommandRow{"capture", capture},
       CommandRow{"session check", session_check},
       CommandRow{"session info", session_info},
       CommandRow{"session render", session_render},
@@ -15,6 +16,7 @@ const CommandTable& all_commands() {
       CommandRow{"scan", scan},
       CommandRow{"report", report},
       CommandRow{"target print", target_print},
+      CommandRow{"sim", sim},
       CommandRow{"explain", explain},
       CommandRow{"help", help},
       CommandRow{"completion", completion},

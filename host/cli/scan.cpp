@@ -53,7 +53,7 @@ Result<std::optional<pretend::SurfaceError>> truth_error(const scan::Scan& scan,
   if (!truth) {
     return truth.error();
   }
-  if (!*truth) {
+  if (!*truth || !(*truth)->has_surfaces) {
     return std::optional<pretend::SurfaceError>();
   }
   const calib::model::Pose T_rig_left = rig.devices[scan.devices.left].T_device_rig.inverse();
@@ -62,7 +62,7 @@ Result<std::optional<pretend::SurfaceError>> truth_error(const scan::Scan& scan,
   for (const calib::scene::CloudPoint& point : scan.cloud.points) {
     points.push_back(T_rig_left * point.p);
   }
-  return std::optional(pretend::surface_error((*truth)->scene, points));
+  return std::optional(pretend::surface_error(**truth, points));
 }
 
 std::string picture(const scan::Scan& scan, const PatternSequence& sequence) {

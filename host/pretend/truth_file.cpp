@@ -60,6 +60,16 @@ Device device_of(const Json& json) {
   return device;
 }
 
+void add_mesh(const Json& json, std::vector<Triangle>& triangles) {
+  const Json& points = json.at("points_m");
+  for (const Json& corners : json.at("triangles")) {
+    Triangle& triangle = triangles.emplace_back();
+    for (std::size_t k = 0; k < triangle.size(); ++k) {
+      triangle[k] = vector_of(points.at(corners.at(k).get<std::size_t>()));
+    }
+  }
+}
+
 /// Rotation vector of `solved` after `truth`: the left increment of Rig's covariance.
 Eigen::Vector3d turn(const Pose& solved, const Pose& truth) {
   const Eigen::AngleAxisd turned(solved.q * truth.q.conjugate());
@@ -107,7 +117,7 @@ Result<TruthFile> truth_from_json(std::string_view text) {
     for (const Json& device : json.at("devices")) {
       truth.rig.devices.push_back(device_of(device));
     }
-    for (const Json& each : json.at("plates")) {
+    for (const Json& each : json.value("plates", Json::array())) {
       calib::synth::Plate plate;
       plate.T_rig_plate = pose_of(each.at("T_rig_plate"));
       plate.u0 = each.at("u_m").at(0).get<double>();
@@ -116,9 +126,13 @@ Result<TruthFile> truth_from_json(std::string_view text) {
       plate.v1 = each.at("v_m").at(1).get<double>();
       truth.scene.plates.push_back(std::move(plate));
     }
-    for (const Json& ball : json.at("balls")) {
+    for (const Json& ball : json.value("balls", Json::array())) {
       truth.scene.balls.push_back({vector_of(ball.at("centre_m")), ball.at("radius_m").get<double>()});
     }
+    for (const Json& mesh : json.value("meshes", Json::array())) {
+      add_mesh(mesh, truth.triangles);
+    }
+    truth.has_surfaces = json.value("meshes_complete", true);
     return truth;
   } catch (const std::exception& exception) {
     return fail(RCode::kBadValue, std::string("truth.json: ") + exception.what());
@@ -142,12 +156,57 @@ Result<std::optional<TruthFile>> truth_beside(const std::filesystem::path& sessi
   return std::optional(*std::move(truth));
 }
 
-SurfaceError surface_error(const calib::synth::Scene& scene, std::span<const Eigen::Vector3d> points) {
+// C. Ericson, Real-Time Collision Detection (2005), 5.1.5: which corner, edge or inside is nearest.
+double distance_to(const Triangle& triangle, const Eigen::Vector3d& p) {
+  const auto& [a, b, c] = triangle;
+  const Eigen::Vector3d ab = b - a;
+  const Eigen::Vector3d ac = c - a;
+  const Eigen::Vector3d ap = p - a;
+  const double d1 = ab.dot(ap);
+  const double d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) {
+    return ap.norm();
+  }
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp);
+  const double d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) {
+    return bp.norm();
+  }
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp);
+  const double d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) {
+    return cp.norm();
+  }
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    return (ap - d1 / (d1 - d3) * ab).norm();
+  }
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    return (ap - d2 / (d2 - d6) * ac).norm();
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return (bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b)).norm();
+  }
+  return std::abs(ab.cross(ac).normalized().dot(ap));
+}
+
+SurfaceError surface_error(const TruthFile& truth, std::span<const Eigen::Vector3d> points) {
+  // Every triangle is asked for every point: of many points some are enough.
+  constexpr std::size_t kMostPairs = 50'000'000;
+  const std::size_t every = 1 + points.size() * truth.triangles.size() / kMostPairs;
   std::vector<double> distances;
   distances.reserve(points.size());
   double sum = 0;
-  for (const Eigen::Vector3d& p : points) {
-    distances.push_back(calib::synth::distance_to(scene, p));
+  for (std::size_t k = 0; k < points.size(); k += every) {
+    const Eigen::Vector3d& p = points[k];
+    distances.push_back(calib::synth::distance_to(truth.scene, p));
+    for (const Triangle& triangle : truth.triangles) {
+      distances.back() = std::min(distances.back(), distance_to(triangle, p));
+    }
     sum += distances.back() * distances.back();
   }
   if (distances.empty()) {

@@ -1,13 +1,16 @@
-// truth.json beside a rendered session: the rig and the surfaces as they are, to compare results with.
+// truth.json beside a rendered or pretended session: the rig and the surfaces as they are, to compare results with.
+// docs/truth-format.md.
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calib/model/rig.hpp"
 #include "calib/synth/scene.hpp"
@@ -17,10 +20,15 @@ namespace raysteer::host::pretend {
 
 inline constexpr const char* kTruthFile = "truth.json";
 
+/// Corners in the rig's frame, metres.
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
 struct TruthFile {
   std::uint64_t seed = 0;
-  calib::model::Rig rig;      ///< without covariance
-  calib::synth::Scene scene;  ///< of the first look; prints are not written
+  calib::model::Rig rig;                 ///< without covariance
+  calib::synth::Scene scene;             ///< of the first look; prints are not written
+  std::vector<Triangle> triangles = {};  ///< surfaces of the pretend rig's room; read only
+  bool has_surfaces = true;              ///< all of them; false: some are too fine to be written
 };
 
 std::string to_json(const TruthFile& truth);
@@ -35,7 +43,10 @@ struct SurfaceError {
   double rms_m = 0;
   double p95_m = 0;
 };
-SurfaceError surface_error(const calib::synth::Scene& scene, std::span<const Eigen::Vector3d> points);
+SurfaceError surface_error(const TruthFile& truth, std::span<const Eigen::Vector3d> points);
+
+/// Distance to the nearest point of a triangle.
+double distance_to(const Triangle& triangle, const Eigen::Vector3d& p);
 
 /// A solved rig against the true one, devices of the same name.
 struct RigError {

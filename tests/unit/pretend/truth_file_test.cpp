@@ -42,7 +42,31 @@ TEST(TruthFile, surface_error_is_the_distance_to_the_nearest_surface) {
       {0, 0, 0.696},            // 4 mm before the ball
       {0.5 + 0.003, 0, 1.004},  // past the wall's edge
   };
-  EXPECT_NEAR(surface_error(scene, points).rms_m, std::sqrt((9e-6 + 16e-6 + 25e-6) / 3), 1e-12);
+  EXPECT_NEAR(surface_error({.seed = 0, .rig = {}, .scene = scene}, points).rms_m,
+              std::sqrt((9e-6 + 16e-6 + 25e-6) / 3), 1e-12);
+}
+
+TEST(TruthFile, distance_to_a_triangle_is_that_to_its_nearest_corner_edge_or_inside) {
+  const Triangle triangle{Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(3, 0, 1), Eigen::Vector3d(0, 3, 1)};
+  EXPECT_DOUBLE_EQ(distance_to(triangle, {1, 1, 1.5}), 0.5);                 // above
+  EXPECT_DOUBLE_EQ(distance_to(triangle, {1, -2, 1}), 2);                    // an edge
+  EXPECT_DOUBLE_EQ(distance_to(triangle, {-2, 1, 1}), 2);                    // an edge
+  EXPECT_NEAR(distance_to(triangle, {2.5, 2.5, 1}), std::sqrt(2.0), 1e-12);  // the slanted edge
+  EXPECT_DOUBLE_EQ(distance_to(triangle, {-3, -4, 1}), 5);                   // a corner
+  EXPECT_DOUBLE_EQ(distance_to(triangle, {6, -4, 1}), 5);                    // a corner
+  EXPECT_DOUBLE_EQ(distance_to(triangle, {-3, 7, 1}), 5);                    // a corner
+}
+
+TEST(TruthFile, surfaces_of_the_pretend_rig_are_read_as_triangles) {
+  const auto truth = truth_from_json(
+      R"({"format":1,"seed":2,"devices":[],"meshes_complete":true,
+          "meshes":[{"name":"floor","points_m":[[0,0,3],[1,0,3],[0,1,3]],"triangles":[[0,1,2]]}]})");
+  ASSERT_TRUE(truth) << truth.error().message();
+  ASSERT_EQ(truth->triangles.size(), 1U);
+  const std::vector<Eigen::Vector3d> points{{0.2, 0.2, 3.002}, {0.3, 0.3, 2.998}};
+  EXPECT_NEAR(surface_error(*truth, points).rms_m, 0.002, 1e-12);
+  EXPECT_FALSE(
+      truth_from_json(R"({"format":1,"seed":2,"devices":[],"meshes":[{"points_m":[],"triangles":[[0,1,2]]}]})"));
 }
 
 TEST(TruthFile, a_rig_off_by_its_own_covariance_has_a_chi_square_of_its_parameters) {
