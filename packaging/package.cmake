@@ -1,6 +1,7 @@
-# cmake --build --preset release --target package: raysteer_<version>_<arch>.deb, the host tool.
+# cmake --build --preset release --target package: raysteer_<version>_<arch>.deb, the host tool and the pretend rig.
 include(GNUInstallDirs)
-install(TARGETS raysteer RUNTIME)
+install(TARGETS raysteer raysteer-sim RUNTIME)
+install(DIRECTORY boards scenes plans DESTINATION ${CMAKE_INSTALL_DATADIR}/raysteer)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Debian keeps its changelog compressed; -n leaves the time out, so that the package's bytes do not depend on it.
@@ -45,7 +46,8 @@ set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "Raysteer puts a steered projector's picture where you said, and measures by
 how many millimetres it missed. This is the tool for the laptop: it checks
 recorded sessions, calibrates cameras and projectors, scans surfaces with
-structured light, and reports how sure it is and where it is not.")
+structured light, and reports how sure it is and where it is not. A pretend
+rig in a ray-traced room stands in for one of metal and glass.")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 include(CPack)

@@ -46,7 +46,7 @@ TEST(PrintedCorners, are_drawn_where_they_are) {
   board.material.texture = scene::Texture(scene::Chessboard{.columns = 9, .rows = 7, .square_m = 0.1, .ink = {}});
   room.surfaces.push_back(board);
   World world(rig, room, {.threads = 2});
-  double sum_x = 0, sum_y = 0, worst = 0;
+  double sum_x = 0, sum_y = 0, squares = 0, worst = 0;
   int count = 0;
   for (const hal::Eye eye : hal::kEyes) {
     const Image<float> drawn = world.draw(exposure(nullptr, {}, eye));
@@ -61,6 +61,7 @@ TEST(PrintedCorners, are_drawn_where_they_are) {
         const Vector2d error = corner_near(drawn, *truth) - *truth;
         sum_x += error.x();
         sum_y += error.y();
+        squares += error.squaredNorm() / 2;
         worst = std::max(worst, error.norm());
         ++count;
       }
@@ -69,10 +70,13 @@ TEST(PrintedCorners, are_drawn_where_they_are) {
   ASSERT_GT(count, 80);
   RecordProperty("bias_x_px", std::to_string(sum_x / count));
   RecordProperty("bias_y_px", std::to_string(sum_y / count));
+  RecordProperty("rms_px", std::to_string(std::sqrt(squares / count)));
   RecordProperty("worst_px", std::to_string(worst));
   EXPECT_NEAR(sum_x / count, 0, 0.01);
   EXPECT_NEAR(sum_y / count, 0, 0.01);
-  EXPECT_LT(worst, 0.05);
+  // What reading corners of a lens this sharp (0.5 px) costs by itself; the squares are 15 px wide and seen aslant.
+  EXPECT_LT(std::sqrt(squares / count), 0.05);
+  EXPECT_LT(worst, 0.15);
 }
 
 TEST(RoomPicture, shows_a_projected_rectangle_where_its_light_lands) {
