@@ -29,7 +29,7 @@ Result<firmware::capture::Findings> run_capture(PretendRig& rig, const proto::pl
   if (!capture) {
     return std::move(capture).error();
   }
-  const std::optional<Pace> pace = run.paced ? std::optional<Pace>(rig.now()) : std::nullopt;
+  const Pace pace(rig.now());
   for (int tick = 0;; ++tick) {
     const State state = capture->tick(rig.now());
     if (state == State::kDone) {
@@ -46,8 +46,8 @@ Result<firmware::capture::Findings> run_capture(PretendRig& rig, const proto::pl
       return fail(RCode::kCancelled);
     }
     rig.advance_to(rig.now() + kTick);
-    if (pace) {
-      pace->wait(rig.now());
+    if (run.paced) {
+      pace.wait(rig.now());
     }
   }
 }
