@@ -218,6 +218,33 @@ TEST(ProjectorFaults, drop_tear_and_delay_the_first_frame_of_a_picture) {
   EXPECT_EQ(lit("tear", 1).size(), 1U);
 }
 
+TEST(ProjectorFaults, refuse_one_command_and_miss_one_vblank) {
+  const auto deaf = small_rig(with(fault("projector", "nak")));
+  begin(*deaf);
+  EXPECT_FALSE(deaf->projector().show(StoredPattern{1}, deaf->now()));
+  EXPECT_TRUE(deaf->projector().show(StoredPattern{1}, deaf->now()));
+  const auto vblank = [](const RigParameters& parameters) {
+    const auto rig = small_rig(parameters);
+    begin(*rig);
+    EXPECT_TRUE(rig->projector().show(StoredPattern{1}, rig->now()));
+    run_for(*rig, milliseconds(100));
+    return (*rig->projector().presented())->vblank;
+  };
+  EXPECT_EQ(vblank(with(fault("projector", "late"))), vblank(small_parameters()) + 1) << "and it is said";
+}
+
+TEST(InterlockFaults, open_the_loop_for_as_long_as_they_say) {
+  const auto rig = small_rig(with(fault("interlock", "open", 0.01)));
+  const auto closed_at = [&](int ms) {
+    rig->advance_to(RigTime(milliseconds(ms)));
+    return rig->interlock().state()->closed;
+  };
+  EXPECT_TRUE(closed_at(99));
+  EXPECT_FALSE(closed_at(101));
+  EXPECT_FALSE(closed_at(109));
+  EXPECT_TRUE(closed_at(111));
+}
+
 TEST(InterlockFaults, cut_the_light_on_the_instant_between_ticks) {
   const auto rig = small_rig();
   begin(*rig);

@@ -234,6 +234,26 @@ TEST(MockMirror, has_the_faults_it_knows) {
   EXPECT_GT(std::abs(after("ring", false)), 1e-6);
 }
 
+TEST(MockMirror, is_so_much_slower_when_its_servo_folds_back) {
+  MirrorParameters parameters = ideal();
+  parameters.axes[0].dynamics = {.delay_s = 0, .rate = 2, .acceleration = 1e4, .natural = 5'000, .damping = 1};
+  const auto reached = [&](std::vector<Fault> faults) {
+    Rig rig(parameters, 1, {}, std::move(faults));
+    rig.aim(0.2);
+    rig.run(milliseconds(20));
+    return rig.angle1();
+  };
+  EXPECT_NEAR(reached({}), 2 * 0.02, 0.002);
+  EXPECT_NEAR(reached({{.device = "mirror", .what = "hot", .amount = 4}}), 2 * 0.02 / 4, 0.002);
+}
+
+TEST(MockMirror, refuses_so_many_commands_and_then_obeys) {
+  Rig rig(ideal(), 1, {}, {{.device = "mirror", .what = "refuse", .times = 2}});
+  EXPECT_FALSE(rig.mirror.aim({}, rig.clock.now()));
+  EXPECT_FALSE(rig.mirror.aim({}, rig.clock.now()));
+  EXPECT_TRUE(rig.mirror.aim({}, rig.clock.now()));
+}
+
 TEST(MirrorPreset, suggests_the_nearest_known) {
   const auto none = mirror_preset("galvos");
   ASSERT_FALSE(none);
