@@ -1,7 +1,6 @@
 // value: faults that were asked for, and the words for them.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <span>
 #include <string>

@@ -44,7 +44,7 @@ Status MockMirror::check_plugged(RigTime now) const {
 }
 
 Status MockMirror::do_aim(MirrorAngles target, RigTime at) {
-  RAYSTEER_TRY(check_plugged(at));
+  RAYSTEER_TRY(check_plugged(clock_.now()));
   if (faults_.take("refuse", at)) {
     return fail(RCode::kDeviceUnavailable, "the mirror's driver did not answer");
   }
