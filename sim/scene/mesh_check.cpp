@@ -8,12 +8,10 @@ Status check_mesh(const Mesh& mesh, const std::string& file) {
   if (mesh.triangles.empty()) {
     return fail(RCode::kMeshEmpty, file + " has no faces");
   }
-  constexpr double kFarthest = 1e4;  // metres
-  const auto bad = std::ranges::find_if(
-      mesh.vertices, [](const Eigen::Vector3d& p) { return !(p.cwiseAbs().maxCoeff() < kFarthest) || !p.allFinite(); });
+  const auto bad = std::ranges::find_if(mesh.vertices, [](const Eigen::Vector3d& p) { return !p.allFinite(); });
   if (bad != mesh.vertices.end()) {
-    return fail(RCode::kMeshNotFinite, file + ": vertex " + std::to_string(bad - mesh.vertices.begin() + 1) +
-                                           " is not finite, or farther than 10 km; expected metres");
+    return fail(RCode::kMeshNotFinite,
+                file + ": vertex " + std::to_string(bad - mesh.vertices.begin() + 1) + " is not finite");
   }
   for (const Triangle& triangle : mesh.triangles) {
     if (std::ranges::max(triangle) >= mesh.vertices.size()) {

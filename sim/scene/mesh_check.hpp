@@ -8,8 +8,8 @@
 
 namespace raysteer::sim::scene {
 
-/// kMeshEmpty: no faces; kMeshNotFinite: a vertex with NaN or infinity, or farther away than any room is wide;
-/// kMeshIndex: a face names a vertex that is not there.
+/// kMeshEmpty: no faces; kMeshNotFinite: a vertex with NaN or infinity; kMeshIndex: a face names a vertex that is not
+/// there.
 Status check_mesh(const Mesh& mesh, const std::string& file);
 
 }  // namespace raysteer::sim::scene

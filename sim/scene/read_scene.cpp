@@ -1,5 +1,6 @@
 #include "sim/scene/read_scene.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -270,6 +271,12 @@ class SceneReader {
     }
     for (Eigen::Vector3d& vertex : mesh->vertices) {
       vertex *= scale;
+    }
+    constexpr double kFarthest = 1000;  // metres: as far as any place in a scene
+    if (std::ranges::any_of(mesh->vertices,
+                            [](const Eigen::Vector3d& p) { return !(p.cwiseAbs().maxCoeff() < kFarthest); })) {
+      faults_.add(fail(RCode::kMeshNotFinite, name + " is more than a kilometre wide; expected metres, or 'scale'"));
+      return;
     }
     add(table, std::move(*mesh));
   }

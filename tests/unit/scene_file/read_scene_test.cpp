@@ -99,7 +99,7 @@ TEST_F(ReadScene, says_what_is_wrong_and_where) {
 }
 
 TEST_F(ReadScene, a_mesh_is_scaled_and_its_faults_are_told_apart) {
-  write("ramp.obj", "v 0 0 0\nv 1000 0 0\nv 0 1000 500\nf 1 2 3\n");
+  write("ramp.obj", "v 0 0 0\nv 20000 0 0\nv 0 1000 500\nf 1 2 3\n");  // millimetres
   write("bare.obj", "v 0 0 0\n");
   write("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   write("ramp.stl", "solid\n");
@@ -107,6 +107,7 @@ TEST_F(ReadScene, a_mesh_is_scaled_and_its_faults_are_told_apart) {
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_NEAR(flatten(*scene, {}).vertices[2].z(), 1.5, 1e-12);
   refused(kHead + "[[mesh]]\nfile = 'rmap.obj'\n", RCode::kMeshMissing, "rmap.obj");
+  refused(kHead + "[[mesh]]\nfile = 'ramp.obj'\n", RCode::kMeshNotFinite, "'scale'");
   refused(kHead + "[[mesh]]\nfile = 'bare.obj'\n", RCode::kMeshEmpty, "bare.obj");
   refused(kHead + "[[mesh]]\nfile = 'nan.obj'\n", RCode::kMeshNotFinite, "nan.obj");
   refused(kHead + "[[mesh]]\nfile = 'ramp.stl'\n", RCode::kBadValue, ".obj or .ply");
