@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "hal/mirror.hpp"
@@ -16,9 +17,13 @@ namespace raysteer::sim::world {
 /// Of a panel's surroundings so much is looked at: blur carries light that far out.
 inline constexpr int kPanelBorderPx = 48;
 
+/// Candela of each panel pixel's neighbourhood when it is white.
+Smooth intensity_map(const optics::TrueProjector& projector);
+
 class Lamp {
  public:
-  Lamp(const optics::TrueRig& rig, hal::MirrorAngles angles);
+  /// `intensity`: intensity_map() of the rig's projector.
+  Lamp(const optics::TrueRig& rig, std::shared_ptr<const Smooth> intensity, hal::MirrorAngles angles);
 
   const optics::LightPath& path() const { return path_; }
   /// From here light seems to come; it truly comes from the same direction.
@@ -33,7 +38,7 @@ class Lamp {
   }
 
   /// Candela of the panel's neighbourhood of `x` when it is white.
-  double intensity(const Eigen::Vector2d& x) const { return intensity_(x.x(), x.y()); }
+  double intensity(const Eigen::Vector2d& x) const { return (*intensity_)(x.x(), x.y()); }
 
   /// Light on a surface, lux, and what of it one camera's pixel gets.
   struct Falls {
@@ -51,7 +56,7 @@ class Lamp {
   optics::LightPath path_;
   Eigen::Vector3d centre_;
   Eigen::Vector3d axis_;  ///< of the virtual projector: depth grows along it
-  Smooth intensity_;
+  std::shared_ptr<const Smooth> intensity_;
 };
 
 }  // namespace raysteer::sim::world

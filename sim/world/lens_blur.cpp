@@ -2,17 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace raysteer::sim::world {
 
 std::vector<float> lens_blur(double sigma_px) {
-  const double t = sigma_px * sigma_px;
   const int reach = sigma_px > 0 ? static_cast<int>(std::ceil(4 * sigma_px)) + 1 : 0;
   std::vector<double> half;
   double sum = 0;
   for (int n = 0; n <= reach; ++n) {
-    half.push_back(std::exp(-t) * std::cyl_bessel_i(static_cast<double>(n), t));
-    sum += n == 0 ? half.back() : 2 * half.back();
+    constexpr int kSteps = 512;  // of the response's integral from 0 to pi, smooth and periodic: exact to rounding
+    double weight = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double w = (i + 0.5) * std::numbers::pi / kSteps;
+      const double s = 4 * std::sin(w / 2) * std::sin(w / 2);
+      weight += std::exp(-sigma_px * sigma_px / 2 * (s + s * s / 12)) * std::cos(w * n) / kSteps;
+    }
+    half.push_back(weight);
+    sum += n == 0 ? weight : 2 * weight;
   }
   std::vector<float> weights;
   for (const double weight : half) {

@@ -5,8 +5,9 @@
 
 namespace raysteer::sim::world {
 
-/// Half of a Gaussian for sampled pictures, from the middle out: exp(-t) I_n(t) with t = sigma^2. Its variance is
-/// sigma^2 also where the samples are coarser than the Gaussian (T. Lindeberg, Scale-Space for Discrete Signals, 1990).
+/// Half of a Gaussian for pictures whose pixels are means over squares, from the middle out. With s = 4 sin^2(w / 2)
+/// the second difference's response, w^2 = s + s^2 / 12 + ..., so exp(-sigma^2 / 2 (s + s^2 / 12)) has a Gaussian's
+/// variance and fourth moment also where it is narrower than a pixel. Its far ends may be a little below zero.
 std::vector<float> lens_blur(double sigma_px);
 
 /// One row, its ends repeated.

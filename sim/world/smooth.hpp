@@ -7,22 +7,25 @@
 
 namespace raysteer::sim::world {
 
-/// Bilinear between nodes 16 px apart; constant outside [-border, size + border].
+/// Bilinear between nodes a 64th of the width apart, at most 16 px; constant outside [-border, size + border].
 class Smooth {
  public:
   template <class Function>
   Smooth(int width, int height, int border, const Function& value)
-      : border_(border), columns_((width + 2 * border) / kStep + 2), rows_((height + 2 * border) / kStep + 2) {
+      : border_(border),
+        step_(std::clamp(width / 64, 2, 16)),
+        columns_((width + 2 * border) / step_ + 2),
+        rows_((height + 2 * border) / step_ + 2) {
     for (int row = 0; row < rows_; ++row) {
       for (int column = 0; column < columns_; ++column) {
-        nodes_.push_back(static_cast<float>(value(Eigen::Vector2d(column * kStep - border, row * kStep - border))));
+        nodes_.push_back(static_cast<float>(value(Eigen::Vector2d(column * step_ - border, row * step_ - border))));
       }
     }
   }
 
   double operator()(double x, double y) const {
-    const double column = std::clamp((x + border_) / kStep, 0.0, columns_ - 1.001);
-    const double row = std::clamp((y + border_) / kStep, 0.0, rows_ - 1.001);
+    const double column = std::clamp((x + border_) / step_, 0.0, columns_ - 1.001);
+    const double row = std::clamp((y + border_) / step_, 0.0, rows_ - 1.001);
     const auto i = static_cast<int>(column);
     const auto j = static_cast<int>(row);
     const float* at = nodes_.data() + j * columns_ + i;
@@ -32,8 +35,8 @@ class Smooth {
   }
 
  private:
-  static constexpr int kStep = 16;
   int border_;
+  int step_;
   int columns_;
   int rows_;
   std::vector<float> nodes_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/optics/light_path.hpp"
+#include "sim/world/bounce.hpp"
 #include "sim/world/lamp.hpp"
 #include "sim/world/lens_blur.hpp"
 #include "sim/world/light.hpp"
@@ -65,10 +66,31 @@ Standing standing(const optics::TrueRig& rig, hal::MirrorAngles from, hal::Mirro
   return standing;
 }
 
+/// May a lens see into a box? Not when all its corners lie beyond one border of the picture, or behind the lens.
+bool may_see(const Eigen::Isometry3d& T_lens_rig, const optics::Lens& lens, int width, int height,
+             const std::array<Vector3d, 8>& corners) {
+  // The pyramid of directions within the picture, with a tenth to spare for distortion and blur.
+  const auto& numbers = lens.numbers();
+  const Vector2d low = (Vector2d(-0.1 * width, -0.1 * height) - numbers.centre_px).cwiseQuotient(numbers.focal_px);
+  const Vector2d high = (Vector2d(1.1 * width, 1.1 * height) - numbers.centre_px).cwiseQuotient(numbers.focal_px);
+  std::array<int, 5> outside{};
+  for (const Vector3d& corner : corners) {
+    const Vector3d p = T_lens_rig * corner;
+    outside[0] += p.z() <= 0 ? 1 : 0;
+    outside[1] += p.x() < low.x() * p.z() ? 1 : 0;
+    outside[2] += p.x() > high.x() * p.z() ? 1 : 0;
+    outside[3] += p.y() < low.y() * p.z() ? 1 : 0;
+    outside[4] += p.y() > high.y() * p.z() ? 1 : 0;
+  }
+  return std::none_of(outside.begin(), outside.end(), [&](int count) { return count == 8; });
+}
+
 /// One picture on the panel as one look's footprints see it.
 struct Shining {
   std::shared_ptr<const Lit> lit;
+  std::shared_ptr<const Bounce> bounce;  ///< nullptr: not asked for
   std::unique_ptr<const PanelLight> light;
+  const LightSpan* span = nullptr;
   float weight = 0;
 };
 
@@ -78,16 +100,35 @@ Image<float> gather(const Seen& seen, double lux_s, const std::vector<Shining>& 
   const int height = seen.height();
   const std::vector<float> weights = lens_blur(seen.camera().blur_px);
   const auto ambient = static_cast<float>(lux_s);
+  std::vector<std::pair<const Bounce*, std::vector<float>>> indirect;
+  for (const Shining& one : shining) {
+    if (one.bounce) {
+      indirect.emplace_back(one.bounce.get(), std::vector<float>(one.bounce->nodes()));
+      one.bounce->add(*one.span->picture, one.span->first_row, one.span->end_row, one.weight, indirect.back().second);
+    }
+  }
   Image<float> across = Image<float>::uninitialised(width, height);
   for_rows(height, threads, [&](int first, int end) {
     std::vector<float> sharp(static_cast<std::size_t>(width));
+    std::vector<float> even(static_cast<std::size_t>(width), ambient);  // light from all around, lux seconds
+    std::vector<float> bounced;
     for (int y = first; y < end; ++y) {
+      if (!indirect.empty()) {
+        std::fill(even.begin(), even.end(), ambient);
+        for (const auto& [bounce, nodes] : indirect) {
+          bounce->row(nodes, y, bounced);
+          for (std::size_t x = 0; x < even.size(); ++x) {
+            even[x] += bounced[x];
+          }
+        }
+      }
       const Sight* sights = seen.row(y);
-      for (int x = 0; x < width; ++x) {
-        sharp[static_cast<std::size_t>(x)] = ambient * sights[x].reflect;
+      for (std::size_t x = 0; x < even.size(); ++x) {
+        sharp[x] = even[x] * sights[x].reflect;
       }
       for (const PartSight& part : seen.parts(y)) {
-        sharp[static_cast<std::size_t>(part.x)] += ambient * part.sight.reflect;
+        const auto x = static_cast<std::size_t>(part.x);
+        sharp[x] += even[x] * part.sight.reflect;
       }
       for (const Shining& one : shining) {
         one.light->add(one.lit->row(y), one.weight, sharp.data());
@@ -111,6 +152,10 @@ Image<float> gather(const Seen& seen, double lux_s, const std::vector<Shining>& 
         for (int x = 0; x < width; ++x) {
           out[x] += weight * (above[x] + below[x]);
         }
+      }
+      // The blur's far ends dip a little below zero beside bright edges.
+      for (int x = 0; x < width; ++x) {
+        out[x] = std::max(out[x], 0.0F);
       }
     }
   });
@@ -145,6 +190,13 @@ struct World::State {
   struct Look {
     hal::MirrorAngles mirror;
     std::shared_ptr<const Lit> lit;
+    std::shared_ptr<const Bounce> bounce;
+  };
+  /// The room as rays see it, and what would make it another.
+  struct Built {
+    std::shared_ptr<const Shapes> shapes;
+    std::uint64_t still_key = 0;
+    std::vector<Vector3d> moving;
   };
   /// What one camera has traced; looks in the order of their last use, newest first.
   struct Traced {
@@ -158,28 +210,62 @@ struct World::State {
   scene::Scene scene;
   WorldOptions options;
   int target_pose = 0;
-  std::shared_ptr<const Shapes> shapes;
-  std::uint64_t shapes_key = 0;
-  std::vector<Vector3d> moving;  ///< where what moves was when `shapes` were made
+  Built still;  ///< without what moves
+  Built whole;
+  std::shared_ptr<const Smooth> intensity;
   std::array<Traced, 2> eyes;
   Traced room;
 
   scene::Moment moment(RigTime time) const { return {.time = time, .target_pose = target_pose}; }
 
-  const std::shared_ptr<const Shapes>& shapes_at(RigTime time) {
+  /// `matters`: is what moves looked at? Asked with its corners in the rig's frame; when not, the still room will do.
+  template <class Matters>
+  const std::shared_ptr<const Shapes>& shapes_at(RigTime time, const Matters& matters) {
     const scene::Moment now = moment(time);
     const std::uint64_t key = scene::still_key(scene, now);
     std::vector<Vector3d> moving_now = scene::flatten(scene, now, scene::Which::kMoving).vertices;
-    if (!shapes || key != shapes_key || moving_now != moving) {
-      shapes = std::make_shared<const Shapes>(scene, scene::flatten(scene, now));
-      shapes_key = key;
-      moving = std::move(moving_now);
+    const bool moves = !moving_now.empty() && matters(box(moving_now));
+    if (!moves) {
+      moving_now.clear();
     }
-    return shapes;
+    Built& built = moves ? whole : still;
+    if (!built.shapes || key != built.still_key || moving_now != built.moving) {
+      const auto which = moves ? scene::Which::kAll : scene::Which::kStill;
+      built = {.shapes = std::make_shared<const Shapes>(scene, scene::flatten(scene, now, which)),
+               .still_key = key,
+               .moving = std::move(moving_now)};
+    }
+    return built.shapes;
+  }
+
+  /// The corners of the box around points of the room, in the rig's frame.
+  std::array<Vector3d, 8> box(const std::vector<Vector3d>& points) const {
+    Eigen::AlignedBox3d around;
+    for (const Vector3d& p : points) {
+      around.extend(p);
+    }
+    const Eigen::Isometry3d T_rig_room = scene.T_room_rig.inverse();
+    std::array<Vector3d, 8> corners;
+    for (std::size_t i = 0; i < 8; ++i) {
+      corners[i] = T_rig_room * around.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    }
+    return corners;
+  }
+
+  /// May something in a box be seen by this camera, or stand in the light of these spans?
+  bool matters(const optics::TrueCamera& camera, const std::vector<LightSpan>& spans,
+               const std::array<Vector3d, 8>& corners) const {
+    if (options.interreflection || may_see(camera.T_camera_rig, camera.lens, camera.width, camera.height, corners)) {
+      return true;
+    }
+    return std::any_of(spans.begin(), spans.end(), [&](const LightSpan& span) {
+      return span.picture && may_see(optics::LightPath(rig, span.mirror).T_virtual_rig(), rig.projector.lens,
+                                     rig.projector.width, rig.projector.height, corners);
+    });
   }
 
   /// Traces what is not traced yet.
-  const Seen& seen(Traced& traced) const {
+  const Seen& seen(Traced& traced, const std::shared_ptr<const Shapes>& shapes) const {
     if (!traced.seen || traced.shapes != shapes) {
       traced.looks.clear();
       traced.seen.reset();
@@ -189,25 +275,30 @@ struct World::State {
     return *traced.seen;
   }
 
-  std::shared_ptr<const Lit> lit(Traced& traced, hal::MirrorAngles mirror) const {
+  const Look& look(Traced& traced, hal::MirrorAngles mirror) const {
     const auto known =
         std::find_if(traced.looks.begin(), traced.looks.end(), [&](const Look& look) { return look.mirror == mirror; });
     if (known != traced.looks.end()) {
       traced.looks.splice(traced.looks.begin(), traced.looks, known);
-      return traced.looks.front().lit;
+      return traced.looks.front();
     }
     // Make room first: two looks of a large camera are much memory.
     constexpr std::size_t kAlways = 2;
     std::size_t bytes = 0;
     std::size_t count = 1;
-    for (auto look = traced.looks.begin(); look != traced.looks.end();) {
-      bytes += look->lit->bytes();
+    for (auto kept = traced.looks.begin(); kept != traced.looks.end();) {
+      bytes += kept->lit->bytes();
       ++count;
-      look = count > kAlways && 2 * bytes > options.cache_bytes ? traced.looks.erase(look) : std::next(look);
+      kept = count > kAlways && 2 * bytes > options.cache_bytes ? traced.looks.erase(kept) : std::next(kept);
     }
-    const Lamp lamp(rig, mirror);
-    traced.looks.push_front({mirror, std::make_shared<const Lit>(*traced.seen, lamp, options.threads)});
-    return traced.looks.front().lit;
+    const Lamp lamp(rig, intensity, mirror);
+    Look traced_now{
+        .mirror = mirror, .lit = std::make_shared<const Lit>(*traced.seen, lamp, options.threads), .bounce = {}};
+    if (options.interreflection) {
+      traced_now.bounce = std::make_shared<const Bounce>(*traced.seen, lamp, rig.projector, options.threads);
+    }
+    traced.looks.push_front(std::move(traced_now));
+    return traced.looks.front();
   }
 
   /// Spans that differ only in when they were are one.
@@ -230,7 +321,10 @@ struct World::State {
       done.push_back(&span);
       const hal::MirrorAngles grid = on_grid(span.mirror);
       Shining one;
-      one.lit = lit(traced, grid);
+      const Look& at = look(traced, grid);
+      one.lit = at.lit;
+      one.bounce = at.bounce;
+      one.span = &span;
       one.light = std::make_unique<const PanelLight>(*span.picture, span.first_row, span.end_row,
                                                      standing(rig, grid, span.mirror, span.drift), one.lit->levels(),
                                                      options.threads);
@@ -248,6 +342,7 @@ struct World::State {
 World::World(optics::TrueRig rig, scene::Scene scene, WorldOptions options) : state_(std::make_unique<State>()) {
   state_->eyes[0].camera = rig.cameras[0];
   state_->eyes[1].camera = rig.cameras[1];
+  state_->intensity = std::make_shared<const Smooth>(intensity_map(rig.projector));
   state_->rig = std::move(rig);
   state_->scene = std::move(scene);
   state_->options = options;
@@ -262,9 +357,11 @@ const scene::Scene& World::scene() const { return state_->scene; }
 void World::set_target_pose(int pose) { state_->target_pose = pose; }
 
 Image<float> World::draw(const Exposure& exposure) {
-  state_->shapes_at(exposure.begin + exposure.duration / 2);
   State::Traced& eye = state_->eyes[exposure.eye == hal::Eye::kLeft ? 0 : 1];
-  const Seen& seen = state_->seen(eye);
+  const auto& shapes = state_->shapes_at(exposure.begin + exposure.duration / 2, [&](const auto& box) {
+    return state_->matters(eye.camera, exposure.light, box);
+  });
+  const Seen& seen = state_->seen(eye, shapes);
   return gather(seen, state_->ambient_lux_s(exposure.begin, exposure.duration), state_->shining(eye, exposure.light),
                 state_->options.threads);
 }
@@ -274,7 +371,7 @@ std::optional<LitPoint> World::lit_point(hal::MirrorAngles mirror, ProjectorPx x
   if (!(x.x >= -0.5 && x.y >= -0.5 && x.x <= projector.width - 0.5 && x.y <= projector.height - 0.5)) {
     return {};
   }
-  const Shapes& shapes = *state_->shapes_at(at);
+  const Shapes& shapes = *state_->shapes_at(at, [](const auto&) { return true; });
   const auto ray = optics::LightPath(state_->rig, mirror).leave({x.x, x.y});
   if (!ray || !ray->passage.through) {
     return {};
@@ -288,7 +385,7 @@ std::optional<LitPoint> World::lit_point(hal::MirrorAngles mirror, ProjectorPx x
 }
 
 std::optional<ProjectorPx> World::panel_pixel(hal::MirrorAngles mirror, const Vector3d& p, RigTime at) {
-  const Shapes& shapes = *state_->shapes_at(at);
+  const Shapes& shapes = *state_->shapes_at(at, [](const auto&) { return true; });
   const auto by = optics::LightPath(state_->rig, mirror).lit_by(p);
   const optics::TrueProjector& projector = state_->rig.projector;
   if (!by || !by->passage.through ||
@@ -305,11 +402,11 @@ std::optional<ProjectorPx> World::panel_pixel(hal::MirrorAngles mirror, const Ve
 }
 
 Image<std::uint8_t> World::room_picture(const RoomView& view, const Exposure& exposure) {
-  state_->shapes_at(exposure.begin + exposure.duration / 2);
   State::Traced& room = state_->room;
   room = {};
   room.camera = viewer(view);
-  const Seen& seen = state_->seen(room);
+  const Seen& seen =
+      state_->seen(room, state_->shapes_at(exposure.begin + exposure.duration / 2, [](const auto&) { return true; }));
   const std::vector<Shining> shining = state_->shining(room, exposure.light);
 
   // The eye adapts to the brightest the projector can do here, so that pictures of one room compare.

@@ -21,7 +21,7 @@ namespace raysteer::sim::world {
 
 struct WorldOptions {
   int threads = 2;
-  /// Light that comes by way of one other surface.
+  /// Light that comes by way of one other surface (bounce.hpp).
   bool interreflection = false;
   /// Traced looks kept for another visit; two looks of both eyes always are.
   std::size_t cache_bytes = std::size_t{256} << 20U;
