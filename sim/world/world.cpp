@@ -94,7 +94,21 @@ struct Shining {
   float weight = 0;
 };
 
-/// What comes in through a lens, blurred by it. `lux_s`: ambient light times time.
+/// So many pixels beyond each border of a camera's picture its lens's blur brings light in.
+int blur_margin(const optics::TrueCamera& camera) { return static_cast<int>(lens_blur(camera.blur_px).size()) - 1; }
+
+/// The camera with a larger sensor, so that its blur has what lies just outside the picture.
+optics::TrueCamera with_margin(optics::TrueCamera camera) {
+  const int margin = blur_margin(camera);
+  optics::LensNumbers numbers = camera.lens.numbers();
+  numbers.centre_px += Vector2d(margin, margin);
+  camera.lens = optics::Lens(numbers);
+  camera.width += 2 * margin;
+  camera.height += 2 * margin;
+  return camera;
+}
+
+/// What comes in through a lens, blurred by it; without the margin. `lux_s`: ambient light times time.
 Image<float> gather(const Seen& seen, double lux_s, const std::vector<Shining>& shining, int threads) {
   const int width = seen.width();
   const int height = seen.height();
@@ -137,24 +151,26 @@ Image<float> gather(const Seen& seen, double lux_s, const std::vector<Shining>& 
       blur_row(weights, sharp.data(), width, across.row(y));
     }
   });
-  Image<float> electrons = Image<float>::uninitialised(width, height);
-  for_rows(height, threads, [&](int first, int end) {
+  const int margin = blur_margin(seen.camera());
+  Image<float> electrons = Image<float>::uninitialised(width - 2 * margin, height - 2 * margin);
+  for_rows(electrons.height(), threads, [&](int first, int end) {
     for (int y = first; y < end; ++y) {
       float* out = electrons.row(y);
-      const float* row = across.row(y);
-      for (int x = 0; x < width; ++x) {
-        out[x] = weights[0] * row[x];
+      const auto row = [&](int k) { return across.row(y + margin + k) + margin; };
+      const float* here = row(0);
+      for (int x = 0; x < electrons.width(); ++x) {
+        out[x] = weights[0] * here[x];
       }
-      for (int k = 1; k < static_cast<int>(weights.size()); ++k) {
+      for (int k = 1; k <= margin; ++k) {
         const float weight = weights[static_cast<std::size_t>(k)];
-        const float* above = across.row(std::max(y - k, 0));
-        const float* below = across.row(std::min(y + k, height - 1));
-        for (int x = 0; x < width; ++x) {
+        const float* above = row(-k);
+        const float* below = row(k);
+        for (int x = 0; x < electrons.width(); ++x) {
           out[x] += weight * (above[x] + below[x]);
         }
       }
       // The blur's far ends dip a little below zero beside bright edges.
-      for (int x = 0; x < width; ++x) {
+      for (int x = 0; x < electrons.width(); ++x) {
         out[x] = std::max(out[x], 0.0F);
       }
     }
@@ -340,8 +356,8 @@ struct World::State {
 };
 
 World::World(optics::TrueRig rig, scene::Scene scene, WorldOptions options) : state_(std::make_unique<State>()) {
-  state_->eyes[0].camera = rig.cameras[0];
-  state_->eyes[1].camera = rig.cameras[1];
+  state_->eyes[0].camera = with_margin(rig.cameras[0]);
+  state_->eyes[1].camera = with_margin(rig.cameras[1]);
   state_->intensity = std::make_shared<const Smooth>(intensity_map(rig.projector));
   state_->rig = std::move(rig);
   state_->scene = std::move(scene);
@@ -404,7 +420,7 @@ std::optional<ProjectorPx> World::panel_pixel(hal::MirrorAngles mirror, const Ve
 Image<std::uint8_t> World::room_picture(const RoomView& view, const Exposure& exposure) {
   State::Traced& room = state_->room;
   room = {};
-  room.camera = viewer(view);
+  room.camera = with_margin(viewer(view));
   const Seen& seen =
       state_->seen(room, state_->shapes_at(exposure.begin + exposure.duration / 2, [](const auto&) { return true; }));
   const std::vector<Shining> shining = state_->shining(room, exposure.light);

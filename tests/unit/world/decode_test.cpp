@@ -60,6 +60,7 @@ TEST(DefaultSequence, decodes_with_the_errors_that_are_predicted) {
   const optics::LightPath path(rig, mirror);
   const Vector3d normal = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * Vector3d(0, 0, 1);
   double squares = 0, predicted = 0, whitened = 0;
+  double bias[2] = {0, 0};
   int count = 0, gross = 0;
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
@@ -70,6 +71,12 @@ TEST(DefaultSequence, decodes_with_the_errors_that_are_predicted) {
       const Vector3d p = camera.centre() + (Vector3d(0, 0, 3) - camera.centre()).dot(normal) / ray.dot(normal) * ray;
       const auto truth = path.pixel(p);
       ASSERT_TRUE(truth);
+      // At the panel's rim blur brings the dark in from outside, in the room as here; no sigma knows of it.
+      constexpr double kRim = 8;
+      if (truth->x() < kRim || truth->y() < kRim || truth->x() > rig.projector.width - 1 - kRim ||
+          truth->y() > rig.projector.height - 1 - kRim) {
+        continue;
+      }
       for (const auto& [found, variance, wanted] : {std::tuple(map->x(x, y), map->variance_x(x, y), truth->x()),
                                                     {map->y(x, y), map->variance_y(x, y), truth->y()}}) {
         const double error = found - wanted;
@@ -77,6 +84,7 @@ TEST(DefaultSequence, decodes_with_the_errors_that_are_predicted) {
           ++gross;
           continue;
         }
+        bias[count % 2] += error;
         squares += error * error;
         predicted += variance;
         whitened += error * error / variance;
@@ -88,6 +96,8 @@ TEST(DefaultSequence, decodes_with_the_errors_that_are_predicted) {
   RecordProperty("rms_px", std::to_string(std::sqrt(squares / count)));
   RecordProperty("predicted_px", std::to_string(std::sqrt(predicted / count)));
   RecordProperty("whitened_rms", std::to_string(std::sqrt(whitened / count)));
+  RecordProperty("bias_x_px", std::to_string(2 * bias[0] / count));
+  RecordProperty("bias_y_px", std::to_string(2 * bias[1] / count));
   RecordProperty("gross", std::to_string(gross));
   EXPECT_NEAR(std::sqrt(squares / predicted), 1, 0.15);
   EXPECT_LT(gross, count / 1000);
