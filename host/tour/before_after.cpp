@@ -15,7 +15,7 @@ using report::Color;
 constexpr int kWidth = 1600;
 constexpr int kGap = 16;
 constexpr int kHalf = (kWidth - kGap) / 2;
-constexpr int kHeight = 560;
+constexpr int kHeight = 540;
 constexpr int kCaption = 64;
 
 constexpr Color kPaper{255, 255, 255};
@@ -52,8 +52,8 @@ class Floor {
   void ruler_below() const {
     const double h = rectangle_.height_m + kAway;
     const double length = std::ceil(rectangle_.width_m * 100 - 1e-6) / 100;
-    canvas_.fill({at(-0.006, h), at(length + 0.006, h), at(length + 0.006, h + kDepth), at(-0.006, h + kDepth)}, kRuler,
-                 0.94);
+    canvas_.fill({at(-kSpare, h), at(length + kSpare, h), at(length + kSpare, h + kDepth), at(-kSpare, h + kDepth)},
+                 kRuler, 0.94);
     for (int cm = 0; cm <= std::lround(100 * length); ++cm) {
       const double tick = cm % 10 == 0 ? 0.017 : cm % 5 == 0 ? 0.013 : 0.008;
       canvas_.line(at(0.01 * cm, h), at(0.01 * cm, h + tick), cm % 10 == 0 ? 1.6 : 1.0, kMarks);
@@ -68,8 +68,8 @@ class Floor {
     const double u = -kAway;
     const double length = std::floor(rectangle_.height_m * 10) / 10;
     const double top = rectangle_.height_m - length;
-    canvas_.fill({at(u - kDepth, top - 0.006), at(u, top - 0.006), at(u, top + length + 0.006),
-                  at(u - kDepth, top + length + 0.006)},
+    canvas_.fill({at(u - kDepth, top - kSpare), at(u, top - kSpare), at(u, top + length + kSpare),
+                  at(u - kDepth, top + length + kSpare)},
                  kRuler, 0.94);
     for (int cm = 0; cm <= std::lround(100 * length); ++cm) {
       const double v = rectangle_.height_m - 0.01 * cm;
@@ -82,8 +82,9 @@ class Floor {
   }
 
  private:
-  static constexpr double kAway = 0.02;   // metres from the rectangle's edge
-  static constexpr double kDepth = 0.04;  // of the ruler
+  static constexpr double kAway = 0.02;    // metres from the rectangle's edge
+  static constexpr double kDepth = 0.04;   // of the ruler
+  static constexpr double kSpare = 0.012;  // beyond its ends
 
   Canvas& canvas_;
   const RoomView& view_;
@@ -101,11 +102,11 @@ RoomView view_of(const Pose& T_rig_plane, const MetricRectangle& rectangle) {
   };
   RoomView view{.width = kHalf, .height = kHeight};
   const double size = rectangle.width_m;
-  view.look_at = place(0.47, 0.56, 0);
+  view.look_at = place(0.46, 0.57, 0);
   view.eye = place(0.52, 0.5, 2.7 * size) + 1.5 * size * (place(0, 1, 0) - place(0, 0, 0)).normalized();
   view.up = place(0, 0, 0) - place(0, 1, 0);
   // The rectangle fills a good half of the picture's width.
-  view.focal_px = 0.60 * kHalf * (view.look_at - view.eye).norm() / size;
+  view.focal_px = 0.66 * kHalf * (view.look_at - view.eye).norm() / size;
   return view;
 }
 

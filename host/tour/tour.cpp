@@ -21,6 +21,7 @@
 #include "host/exchange/write_file.hpp"
 #include "host/session/image_codec.hpp"
 #include "host/session/session.hpp"
+#include "host/sim/board_file.hpp"
 #include "host/tour/before_after.hpp"
 #include "host/tour/show.hpp"
 #include "proto/board/board.hpp"
@@ -57,12 +58,15 @@ Result<Prepared> prepare(const TourOptions& options, const sim::Listener& listen
   if (!captured) {
     return captured.error();
   }
-  const std::string board_file = captured->value("board_file", "");
-  const auto text = exchange::read_file(board_file);
+  const auto board_file = sim::board_file(options.pretend.board);
+  if (!board_file) {
+    return board_file.error();
+  }
+  const auto text = exchange::read_file(*board_file);
   if (!text) {
     return text.error();
   }
-  auto board = proto::board::read_board(*text, board_file);
+  auto board = proto::board::read_board(*text, board_file->string());
   if (!board) {
     return std::move(board).error();
   }
