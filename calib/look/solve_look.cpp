@@ -231,6 +231,18 @@ class Problem {
     at.leave_one_out_mm = 1e3 * std::sqrt(plane_squares / std::max(1, disc_sights));
   }
 
+  /// How far the solution moves when `moved` stand for the cameras, one sight each: a Gauss-Newton step.
+  Delta response(const Solution& at, const std::vector<Sight>& moved) const {
+    const auto before = residuals(at);
+    Problem other = *this;
+    for (Measurement& m : other.measurements_) {
+      m.sight = &moved[static_cast<std::size_t>(m.sight - input_.sights.data())];
+    }
+    const auto after = other.residuals(at);
+    return before && after ? Delta(-at.covariance * (jacobian(at).transpose() * (*after - *before)))
+                           : Delta(Delta::Zero());
+  }
+
  private:
   /// A step in the camera's picture as a step on the plane, metres.
   static Eigen::Vector2d on_plane(const Solution& at, const Measurement& m, const Eigen::Vector2d& step) {
@@ -351,6 +363,30 @@ Solution perturbed(const Solution& solution, const Eigen::Matrix<double, kUnknow
     lens.k[static_cast<std::size_t>(i)] += delta[16 + i];
   }
   return moved;
+}
+
+Covariance with_cameras(const Input& input, const Solution& solution, const model::Rig& rig) {
+  Problem problem(input, solution.panel.mirrored);
+  problem.correct_shifts(solution);
+  static_cast<void>(problem.reweigh(solution));
+  Covariance sum = solution.covariance;
+  // Along the principal axes of what the cameras' calibration leaves open.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(rig.covariance);
+  for (Eigen::Index i = 0; i < rig.covariance.rows(); ++i) {
+    if (axes.eigenvalues()[i] <= 0) {
+      continue;
+    }
+    const Eigen::VectorXd step = std::sqrt(axes.eigenvalues()[i]) * axes.eigenvectors().col(i);
+    std::vector<Sight> moved = input.sights;
+    for (std::size_t d = 0; d < moved.size() && d < rig.devices.size(); ++d) {
+      const model::Device device = model::perturbed(rig.devices[d], step.segment(rig.offset(d), rig.count(d)), d > 0);
+      moved[d].camera = device.camera;
+      moved[d].T_camera_rig = device.T_device_rig;
+    }
+    const Delta delta = problem.response(solution, moved);
+    sum += delta * delta.transpose();
+  }
+  return sum;
 }
 
 Result<Solution> solve_look(const Input& input) {

@@ -64,6 +64,10 @@ struct Solution {
 /// quarter of the measurements disagree).
 Result<Solution> solve_look(const Input& input);
 
+/// The solution's covariance with that of the cameras added: sight i is device i of `rig`, whose covariance is moved
+/// through the adjustment to first order.
+Covariance with_cameras(const Input& input, const Solution& solution, const model::Rig& rig);
+
 /// A solution moved by `delta` in the order of kUnknowns.
 Solution perturbed(const Solution& solution, const Eigen::Matrix<double, kUnknowns, 1>& delta);
 

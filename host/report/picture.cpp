@@ -1,13 +1,12 @@
 #include "host/report/picture.hpp"
 
-#include <png.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "host/report/color.hpp"
+#include "host/report/rgb_png.hpp"
 
 namespace raysteer::host::report {
 namespace {
@@ -34,35 +33,6 @@ float shade(const Vector& a, const Vector& b) {
   constexpr Vector kLight{-0.4F, -0.4F, -0.82F};
   const float cosine = std::abs(n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2]) / length;
   return 0.25F + 0.75F * cosine;
-}
-
-void append(png_structp png, png_bytep bytes, png_size_t count) {
-  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), count);
-}
-void flush(png_structp) {}
-
-std::string encode(const std::vector<std::uint8_t>& rgb, int width, int height) {
-  std::string bytes;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
-  if (info == nullptr) {
-    png_destroy_write_struct(&png, nullptr);
-    return {};
-  }
-  if (setjmp(png_jmpbuf(png)) != 0) {
-    png_destroy_write_struct(&png, &info);
-    return {};
-  }
-  png_set_write_fn(png, &bytes, append, flush);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGB,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_write_info(png, info);
-  for (int y = 0; y < height; ++y) {
-    png_write_row(png, rgb.data() + static_cast<std::ptrdiff_t>(y) * width * 3);
-  }
-  png_write_end(png, info);
-  png_destroy_write_struct(&png, &info);
-  return bytes;
 }
 
 }  // namespace
@@ -129,7 +99,7 @@ std::string cloud_picture(std::span<const PanelPoint> points, int panel_width, i
       rgb[at + 2] = static_cast<std::uint8_t>(static_cast<float>(color.b) * bright);
     }
   }
-  return encode(rgb, width, height);
+  return encode_rgb_png(rgb, width, height);
 }
 
 }  // namespace raysteer::host::report
