@@ -1,8 +1,8 @@
 // pure: how long after its vblank does a picture become light? Measured, since no data sheet tells (algorithms 2.6).
 //
-// White replaces black at a vblank; an exposure of whole frames begins `delay` after that vblank. As long as it begins
-// before the light, it misses a part of it: level = 1 - (latency - delay) / exposure. One exposure on that ramp tells
-// the latency; a later one, on the plateau, confirms it.
+// White replaces black at a vblank and stays; an exposure of whole frames begins `delay` after that vblank. As long as
+// it begins before the light, it misses a part: level = 1 - (latency - delay) / exposure. One exposure on that ramp
+// tells the latency; one on the plateau behind it, with black again after white as in a capture, confirms it.
 #pragma once
 
 #include <chrono>
@@ -10,13 +10,21 @@
 
 namespace raysteer::firmware::capture {
 
+/// Shots are taken so much later than the light is due, and the picture stays so much longer: room for jitter.
+constexpr std::chrono::nanoseconds latency_guard(std::chrono::nanoseconds frame) { return frame / 8; }
+
 class LatencySearch {
  public:
+  struct Probe {
+    std::chrono::nanoseconds delay{};  ///< from white's vblank to the exposure
+    bool as_captured = false;          ///< white is shown only as long as a pattern of a capture
+  };
+
   /// `frame`: of the projector. `exposure`: of the camera, whole frames. `longest`: latency that is believed.
   LatencySearch(std::chrono::nanoseconds frame, std::chrono::nanoseconds exposure, std::chrono::nanoseconds longest);
 
-  /// Where the next exposure begins after white's vblank; nothing when the search has ended.
-  std::optional<std::chrono::nanoseconds> next() const;
+  /// The next exposure to take; nothing when the search has ended.
+  std::optional<Probe> next() const;
   /// Its brightness, 0 as under steady black, 1 as under steady white.
   void take(double level);
 
@@ -27,7 +35,7 @@ class LatencySearch {
 
  private:
   enum class Stage { kRamp, kPlateau, kFound, kLost };
-  std::chrono::nanoseconds frame_;
+  std::chrono::nanoseconds guard_;
   std::chrono::nanoseconds exposure_;
   std::chrono::nanoseconds longest_;
   std::chrono::nanoseconds delay_{};

@@ -113,6 +113,26 @@ enum class RCode : int {
   kDataLoss = 618,
   kStoreReadOnly = 619,
 
+  // 07xx capture and plan
+  kShotIncomplete = 701,
+  kShotSequence = 702,
+  kShotApart = 703,
+  kTriggerEdgeMissing = 704,
+  kTriggerEdgeExtra = 705,
+  kShotDamaged = 706,
+  kAutomaticExposure = 707,
+  kWrongPattern = 708,
+  kFlipLate = 709,
+  kMirrorNotSettled = 710,
+  kMirrorMoved = 711,
+  kNothingLit = 712,
+  kTooBright = 713,
+  kTooDark = 714,
+  kOutOfFocus = 715,
+  kLatencyUnknown = 716,
+  kNoCameraClock = 717,
+  kCaptureForeign = 718,
+
   // 08xx the pretend world
   kMeshMissing = 801,
   kMeshSyntax = 802,

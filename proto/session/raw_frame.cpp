@@ -16,15 +16,11 @@ unsigned get_u16(const std::uint8_t* from) { return from[0] | (static_cast<unsig
 
 template <class Pixel>
 std::vector<std::uint8_t> write_as(ImageView<const Pixel> pixels) {
-  constexpr std::size_t kLargestSide = 65535;
+  const auto header = raw_header(pixels.width(), pixels.height(), 8 * sizeof(Pixel));
   const auto width = static_cast<std::size_t>(pixels.width());
   const auto height = static_cast<std::size_t>(pixels.height());
-  RAYSTEER_CHECK(width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide);
   std::vector<std::uint8_t> bytes(kRawHeaderBytes + width * height * sizeof(Pixel));
-  std::ranges::copy(kRawMagic, bytes.begin());
-  put_u16(&bytes[4], static_cast<unsigned>(width));
-  put_u16(&bytes[6], static_cast<unsigned>(height));
-  put_u16(&bytes[8], 8 * sizeof(Pixel));
+  std::ranges::copy(header, bytes.begin());
   std::uint8_t* to = bytes.data() + kRawHeaderBytes;
   for (int y = 0; y < pixels.height(); ++y) {
     for (const Pixel pixel : pixels.row_span(y)) {
@@ -49,6 +45,18 @@ Frame read_as(const std::uint8_t* from, int width, int height) {
 }
 
 }  // namespace
+
+std::array<std::uint8_t, kRawHeaderBytes> raw_header(int width, int height, int bits) {
+  constexpr int kLargestSide = 65535;
+  RAYSTEER_CHECK(width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide);
+  RAYSTEER_CHECK(bits == 8 || bits == 16);
+  std::array<std::uint8_t, kRawHeaderBytes> bytes{};
+  std::ranges::copy(kRawMagic, bytes.begin());
+  put_u16(&bytes[4], static_cast<unsigned>(width));
+  put_u16(&bytes[6], static_cast<unsigned>(height));
+  put_u16(&bytes[8], static_cast<unsigned>(bits));
+  return bytes;
+}
 
 std::vector<std::uint8_t> write_raw_frame(ImageView<const std::uint8_t> pixels) { return write_as(pixels); }
 std::vector<std::uint8_t> write_raw_frame(ImageView<const std::uint16_t> pixels) { return write_as(pixels); }
