@@ -91,54 +91,66 @@ void judge_complements(const std::vector<Pair>& pairs, std::vector<WrongFrame>& 
   }
 }
 
-/// What least squares leaves of frame k when it is predicted from the others: rows of (I - H) over (1 - h_kk), with the
-/// hat matrix H of 1, cos, sin, and of the second harmonic that a gamma makes when there are steps enough to tell.
-std::vector<std::vector<double>> deleted_residuals(const std::vector<double>& turns) {
+using Matrix = std::vector<std::vector<double>>;
+
+/// The fit of 1, cos and sin to the steps: `fit` gives its three numbers, `deleted` what each step departs by from what
+/// the other steps predict: rows of (I - H) over (1 - h_kk), H the hat matrix.
+struct SinusoidFit {
+  Matrix fit;      // 3 x steps
+  Matrix deleted;  // steps x steps
+};
+
+SinusoidFit make_fit(const std::vector<double>& turns) {
   const std::size_t count = turns.size();
-  const std::size_t terms = count >= 7 ? 5 : 3;
-  std::vector<std::vector<double>> base;  // orthonormal columns, by Gram-Schmidt
-  for (std::size_t t = 0; t < terms; ++t) {
-    std::vector<double> column(count);
+  std::array<std::array<double, 6>, 3> normal{};  // [X'X | I], made [I | inverse]
+  const auto base = [&](std::size_t k) { return std::array{1.0, std::cos(turns[k]), std::sin(turns[k])}; };
+  for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < count; ++k) {
-      const double turn = turns[k] * static_cast<double>((t + 1) / 2);
-      column[k] = t == 0 ? 1 : t % 2 == 1 ? std::cos(turn) : std::sin(turn);
-    }
-    for (const std::vector<double>& earlier : base) {
-      double along = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        along += earlier[k] * column[k];
-      }
-      for (std::size_t k = 0; k < count; ++k) {
-        column[k] -= along * earlier[k];
+      for (std::size_t j = 0; j < 3; ++j) {
+        normal[i][j] += base(k)[i] * base(k)[j];
       }
     }
-    double length = 0;
-    for (const double value : column) {
-      length += value * value;
-    }
-    length = std::sqrt(length);
-    if (length < 1e-6) {
-      continue;
-    }
-    for (double& value : column) {
-      value /= length;
-    }
-    base.push_back(std::move(column));
+    normal[i][3 + i] = 1;
   }
-  std::vector<std::vector<double>> rows(count, std::vector<double>(count));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double pivot = normal[i][i];  // never 0: four steps or more, apart by less than a turn
+    std::ranges::for_each(normal[i], [&](double& value) { value /= pivot; });
+    for (std::size_t other = 0; other < 3; ++other) {
+      const double factor = other == i ? 0 : normal[other][i];
+      for (std::size_t j = 0; j < 6; ++j) {
+        normal[other][j] -= factor * normal[i][j];
+      }
+    }
+  }
+  SinusoidFit made{Matrix(3, std::vector<double>(count)), Matrix(count, std::vector<double>(count))};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        made.fit[i][k] += normal[i][3 + j] * base(k)[j];
+      }
+    }
+  }
   for (std::size_t k = 0; k < count; ++k) {
     for (std::size_t j = 0; j < count; ++j) {
-      rows[k][j] = k == j ? 1 : 0;
-      for (const std::vector<double>& column : base) {
-        rows[k][j] -= column[k] * column[j];
+      made.deleted[k][j] = k == j ? 1 : 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        made.deleted[k][j] -= base(k)[i] * made.fit[i][j];
       }
     }
-    const double left = rows[k][k];
-    for (double& value : rows[k]) {
-      value = left > 1e-9 ? value / left : 0;
+    const double left = made.deleted[k][k];
+    std::ranges::for_each(made.deleted[k], [&](double& value) { value = left > 1e-9 ? value / left : 0; });
+  }
+  return made;
+}
+
+std::vector<double> times(const Matrix& matrix, const std::vector<double>& values) {
+  std::vector<double> product(matrix.size());
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      product[i] += matrix[i][k] * values[k];
     }
   }
-  return rows;
+  return product;
 }
 
 struct Steps {
@@ -158,28 +170,58 @@ Steps steps_of(const std::vector<Pattern>& patterns, const Frames& frames, int f
   return steps;
 }
 
+// How far each step departs from the others' sinusoid, [step][place]. A projector's gamma makes a second harmonic whose
+// part of the first is the same everywhere: one number, taken out.
+std::vector<std::vector<float>> departures_of(const Normalised& places, const Frames& frames, const Steps& steps) {
+  const std::size_t count = steps.frames.size();
+  const SinusoidFit fit = make_fit(steps.turns);
+  std::vector<std::vector<float>> values;
+  for (const int frame : steps.frames) {
+    values.push_back(places.of(*frames[static_cast<std::size_t>(frame)]));
+  }
+  std::vector<std::vector<float>> left(count, std::vector<float>(places.size()));
+  std::vector<std::vector<float>> harmonic = left;
+  double along = 0;
+  double length = 0;
+  std::vector<double> seen(count);
+  std::vector<double> second(count);
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    for (std::size_t k = 0; k < count; ++k) {
+      seen[k] = values[k][n];
+    }
+    const std::vector<double> sinusoid = times(fit.fit, seen);
+    const double amplitude = std::hypot(sinusoid[1], sinusoid[2]);
+    const double phase = std::atan2(sinusoid[2], sinusoid[1]);
+    for (std::size_t k = 0; k < count; ++k) {
+      second[k] = amplitude * std::cos(2 * (phase - steps.turns[k]));
+    }
+    const std::vector<double> departure = times(fit.deleted, seen);
+    const std::vector<double> by_gamma = times(fit.deleted, second);
+    for (std::size_t k = 0; k < count; ++k) {
+      left[k][n] = static_cast<float>(departure[k]);
+      harmonic[k][n] = static_cast<float>(by_gamma[k]);
+      along += departure[k] * by_gamma[k];
+      length += by_gamma[k] * by_gamma[k];
+    }
+  }
+  const auto gamma = static_cast<float>(length > 0 ? along / length : 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      left[k][n] = std::abs(left[k][n] - gamma * harmonic[k][n]);
+    }
+  }
+  return left;
+}
+
 // Takes out the frame that contradicts the others most, and looks again.
 void judge_steps(const Normalised& places, const Frames& frames, Steps steps, std::vector<WrongFrame>& wrong) {
   while (steps.frames.size() >= 4) {
-    const std::vector<std::vector<double>> rows = deleted_residuals(steps.turns);
-    std::vector<std::vector<float>> values;
-    for (const int frame : steps.frames) {
-      values.push_back(places.of(*frames[static_cast<std::size_t>(frame)]));
-    }
-    std::vector<std::vector<float>> departures(values.size(), std::vector<float>(places.size()));
+    const std::vector<std::vector<float>> departures = departures_of(places, frames, steps);
     std::vector<float> medians;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      for (std::size_t n = 0; n < places.size(); ++n) {
-        double left = 0;
-        for (std::size_t j = 0; j < values.size(); ++j) {
-          left += rows[k][j] * static_cast<double>(values[j][n]);
-        }
-        departures[k][n] = static_cast<float>(std::abs(left));
-      }
-      medians.push_back(quantile(departures[k], 0.5));
+    for (const std::vector<float>& departure : departures) {
+      medians.push_back(quantile(departure, 0.5));
     }
-    // Noise is what the quieter frames have.
-    const float limit = limit_for(quantile(medians, 0.25));
+    const float limit = limit_for(quantile(medians, 0.25));  // noise is what the quieter steps have
     std::size_t worst = 0;
     double most = 0;
     for (std::size_t k = 0; k < departures.size(); ++k) {

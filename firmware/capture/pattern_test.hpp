@@ -1,7 +1,8 @@
 // pure: does each frame show the pattern it should? Looked at on the grid, against white, black and its partners.
 //
 // With n = (frame - black) / (white - black): pattern and complement add up to 1 at every place, whatever the scene,
-// blur and interreflection, since light adds; the steps of a sinusoid form one. A picture that is wrong, late, torn or
+// blur and interreflection, since light adds; the steps of a sinusoid form one, but for
+// the projector's gamma, which is the same everywhere. A picture that is wrong, late, torn or
 // stale does not. Gray patterns without complement have no partner here; calib/decode's sequence check sees to them.
 #pragma once
 

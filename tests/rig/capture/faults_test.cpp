@@ -46,9 +46,9 @@ const std::array kCoped{
 INSTANTIATE_TEST_SUITE_P(All, CopedFault,
                          testing::Combine(testing::Values(Kind::kDisplay, Kind::kTriggerMaster),
                                           testing::ValuesIn(kCoped)),
-                         [](const auto& info) {
-                           return std::string(std::get<1>(info.param).name) +
-                                  (std::get<0>(info.param) == Kind::kDisplay ? "_display" : "_trigger_master");
+                         [](const auto& one) {
+                           return std::string(std::get<1>(one.param).name) +
+                                  (std::get<0>(one.param) == Kind::kDisplay ? "_display" : "_trigger_master");
                          });
 
 TEST_P(CopedFault, is_said_and_the_shot_taken_again) {
@@ -121,9 +121,9 @@ const std::array kEndings{
 INSTANTIATE_TEST_SUITE_P(All, EndingFault,
                          testing::Combine(testing::Values(Kind::kDisplay, Kind::kTriggerMaster),
                                           testing::ValuesIn(kEndings)),
-                         [](const auto& info) {
-                           return std::string(std::get<1>(info.param).name) +
-                                  (std::get<0>(info.param) == Kind::kDisplay ? "_display" : "_trigger_master");
+                         [](const auto& one) {
+                           return std::string(std::get<1>(one.param).name) +
+                                  (std::get<0>(one.param) == Kind::kDisplay ? "_display" : "_trigger_master");
                          });
 
 TEST_P(EndingFault, ends_the_capture_with_its_code_light_off_and_nothing_lost) {
@@ -148,8 +148,8 @@ TEST_P(EndingFault, ends_the_capture_with_its_code_light_off_and_nothing_lost) {
 class CaptureFault : public testing::TestWithParam<Kind> {};
 
 INSTANTIATE_TEST_SUITE_P(Both, CaptureFault, testing::Values(Kind::kDisplay, Kind::kTriggerMaster),
-                         [](const auto& info) {
-                           return std::string(info.param == Kind::kDisplay ? "display" : "trigger_master");
+                         [](const auto& one) {
+                           return std::string(one.param == Kind::kDisplay ? "display" : "trigger_master");
                          });
 
 TEST_P(CaptureFault, unplugged_camera_that_comes_back_costs_no_verified_shot) {

@@ -28,7 +28,8 @@ PatternSequence coded(bool complements, int steps) {
 // A wall of uneven albedo under ambient light, noise of 1 % of white; each place sees one column, on one row in 100.
 class Wall {
  public:
-  explicit Wall(PatternSequence sequence) : sequence_(std::move(sequence)), random_(support::seed()) {
+  explicit Wall(PatternSequence sequence, double gamma = 1)
+      : sequence_(std::move(sequence)), gamma_(gamma), random_(support::seed()) {
     const std::vector<Pattern> patterns = sequence_.patterns();
     for (std::size_t k = 0; k < patterns.size(); ++k) {
       frames.emplace_back(see(static_cast<int>(k)));
@@ -51,9 +52,9 @@ class Wall {
       const int x = static_cast<int>(i * 7919LL % kPanel);
       const double albedo = 0.3 + 0.3 * (i % 97) / 97.0;
       const Pattern& pattern = patterns[static_cast<std::size_t>(i % 100 < 100 * torn ? k - 1 : k)];
-      double light = pattern.value(x, 0);
+      double light = std::pow(pattern.value(x, 0), gamma_);
       if (mixed > 0) {
-        light += mixed * (patterns[static_cast<std::size_t>(k - 1)].value(x, 0) - light);
+        light += mixed * (std::pow(patterns[static_cast<std::size_t>(k - 1)].value(x, 0), gamma_) - light);
       }
       samples[static_cast<std::size_t>(i)] = static_cast<float>(0.05 + albedo * light + noise(random_));
     }
@@ -61,6 +62,7 @@ class Wall {
   }
 
   PatternSequence sequence_;
+  double gamma_;
   std::mt19937_64 random_;
 };
 
@@ -71,11 +73,13 @@ std::vector<int> indices(const std::vector<WrongFrame>& wrong) {
 }
 
 TEST(PatternTest, finds_nothing_wrong_with_good_frames) {
-  for (const int steps : {3, 4, 8}) {
-    const PatternSequence sequence = coded(true, steps);
-    Wall wall(sequence);
-    EXPECT_EQ(indices(find_wrong_frames(sequence, wall.references, wall.frames)), std::vector<int>{}) << steps;
-    EXPECT_GT(*finest_contrast(sequence, wall.references, wall.frames), 0.9);
+  for (const double gamma : {1.0, 2.2}) {
+    for (const int steps : {3, 4, 8}) {
+      const PatternSequence sequence = coded(true, steps);
+      Wall wall(sequence, gamma);
+      EXPECT_EQ(indices(find_wrong_frames(sequence, wall.references, wall.frames)), std::vector<int>{}) << steps;
+      EXPECT_GT(*finest_contrast(sequence, wall.references, wall.frames), 0.9);
+    }
   }
 }
 
