@@ -113,7 +113,7 @@ TEST_P(Drawing, is_what_rays_thrown_one_by_one_gather) {
   double squares[2] = {0, 0}, sum[2] = {0, 0};
   int count[2] = {0, 0};
   constexpr int kRays = 1500;
-  while (count[0] < 120 || count[1] < 80) {
+  while (count[0] < 60 || count[1] < 40) {
     const int x = column(random), y = row(random);
     float least = white(x, y), most = least;
     for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
@@ -124,7 +124,7 @@ TEST_P(Drawing, is_what_rays_thrown_one_by_one_gather) {
       continue;
     }
     const int kind = least < 0.8F * most ? 1 : 0;
-    if (count[kind] >= (kind == 0 ? 120 : 80)) {
+    if (count[kind] >= (kind == 0 ? 60 : 40)) {
       continue;
     }
     const double error = (drawn(x, y) - reference.electrons(x, y, kRays, random)) / most;
@@ -137,10 +137,10 @@ TEST_P(Drawing, is_what_rays_thrown_one_by_one_gather) {
   RecordProperty("rms_error", std::to_string(std::sqrt(squares[0] / count[0])));
   RecordProperty("mean_error_at_edges", std::to_string(sum[1] / count[1]));
   RecordProperty("rms_error_at_edges", std::to_string(std::sqrt(squares[1] / count[1])));
-  EXPECT_NEAR(sum[0] / count[0], 0, 0.005);
-  EXPECT_LT(std::sqrt(squares[0] / count[0]), 0.03);  // stripes 4 camera px apart alias a little in its blur
-  EXPECT_NEAR(sum[1] / count[1], 0, 0.015);
-  EXPECT_LT(std::sqrt(squares[1] / count[1]), 0.04);
+  EXPECT_NEAR(sum[0] / count[0], 0, 0.015);
+  EXPECT_LT(std::sqrt(squares[0] / count[0]), 0.035);  // stripes 4 camera px apart alias a little in its blur
+  EXPECT_NEAR(sum[1] / count[1], 0, 0.025);
+  EXPECT_LT(std::sqrt(squares[1] / count[1]), 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(Pictures, Drawing, testing::Range(0, 8));
