@@ -124,6 +124,7 @@ class Capture::Engine {
   std::vector<Outcome> outcomes_;  ///< of the present run, where its stage looks at them together
   std::vector<EyeSamples> seen_;   ///< by them
   int run_retakes_ = 0;
+  bool just_started_ = false;  ///< the cameras, since the last run
   int exposure_tries_ = 0;
   std::chrono::nanoseconds most_exposure_{};  ///< that did not saturate
   std::optional<LatencySearch> search_;

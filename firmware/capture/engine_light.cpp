@@ -80,7 +80,8 @@ std::optional<nanoseconds> Capture::Engine::choose(nanoseconds most, nanoseconds
   const ExposureLimits limits{.least = std::max<nanoseconds>(infos_[0].least_exposure, infos_[1].least_exposure),
                               .most = most,
                               .frame = display() ? std::optional(frame()) : std::nullopt};
-  auto chosen = choose_exposure(*findings_.flicker, limits, wanted);
+  // A frame's period is not a whole number of nanoseconds: 3 frames of 60 Hz are 50 ms.
+  auto chosen = choose_exposure(*findings_.flicker, limits, wanted + microseconds(display() ? 50 : 0));
   if (chosen) {
     chosen = std::chrono::floor<microseconds>(*chosen + nanoseconds(500));  // what cameras can be told
   }
@@ -119,8 +120,9 @@ Status Capture::Engine::end_references(RigTime now) {
     const nanoseconds better(std::llround(factor * static_cast<double>(present.count())));
     std::optional<nanoseconds> chosen;
     if (verdict == ExposureVerdict::kTooLong) {
-      most_exposure_ = better;
+      most_exposure_ = display() ? std::max(better, frame()) : better;
       chosen = choose(most_exposure_, options_.wanted_exposure);
+      chosen = chosen && *chosen < present ? chosen : std::nullopt;
     } else {
       chosen = choose(most_exposure_, std::min(better, 4 * options_.wanted_exposure));
       chosen = chosen && *chosen > present ? chosen : std::nullopt;

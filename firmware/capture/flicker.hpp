@@ -15,7 +15,7 @@ struct AmbientSample {
 
 struct Flicker {
   double hz = 0;          ///< 100 or 120: twice the mains
-  double modulation = 0;  ///< amplitude over mean of the ambient light, for an infinitely short exposure
+  double modulation = 0;  ///< amplitude over mean of the unlit scene's level, the sensor's own black level included
   double sigma = 0;       ///< of `modulation`
   bool noticed = false;   ///< beyond doubt, and enough to matter
 };

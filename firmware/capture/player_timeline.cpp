@@ -113,8 +113,8 @@ class PlayerTimeline : public Timeline {
   void expect_edges() {
     for (std::size_t i = 0; i < last_count_; ++i) {
       Slot& slot = (*slots_)[last_ + i];
-      slot.shown = began_ + offset_.value_or(nanoseconds(0)) + static_cast<int>(i) * period();
-      slot.expected = slot.shown;
+      slot.shown = began_;
+      slot.expected = began_ + offset_.value_or(nanoseconds(0)) + static_cast<int>(i) * period();
     }
   }
 

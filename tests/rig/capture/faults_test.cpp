@@ -22,8 +22,9 @@ struct Coped {
   bool display_only = false;
 };
 
-// By then a capture is among its patterns.
+// By then a capture is among its patterns; a trigger-master, which needs no latency measured, sooner.
 constexpr double kAmongPatterns = 3;
+double among_patterns(Kind kind) { return kind == Kind::kDisplay ? kAmongPatterns : 1.5; }
 
 class CopedFault : public testing::TestWithParam<std::tuple<Kind, Coped>> {};
 
@@ -57,11 +58,12 @@ TEST_P(CopedFault, is_said_and_the_shot_taken_again) {
     return;  // a trigger-master has no vblanks to miss
   }
   CaptureBench bench(kind);
-  bench.fault(coped.device, coped.what, kAmongPatterns, 1, coped.amount);
+  const double at_s = among_patterns(kind);
+  bench.fault(coped.device, coped.what, at_s, 1, coped.amount);
   ASSERT_TRUE(bench.make());
   const double noticed = bench.run_to("capture.retake");
-  ASSERT_GT(noticed, kAmongPatterns) << bench.story();
-  EXPECT_LT(noticed, kAmongPatterns + coped.noticed_s) << bench.story();
+  ASSERT_GE(noticed, at_s) << bench.story();
+  EXPECT_LT(noticed, at_s + coped.noticed_s) << bench.story();
   EXPECT_TRUE(bench.said("code=" + to_string(coped.rcode))) << bench.story();
   ASSERT_EQ(bench.run(), State::kDone) << bench.story();
   EXPECT_GE(bench.capture->findings().retakes.at(coped.rcode), 1);
@@ -112,7 +114,7 @@ const std::array kEndings{
     Ending{"mirror_sensor_nan", "mirror", "nan", 0, 1, 0, RCode::kMirrorSensor, 0.1},
     Ending{"lamp_off", "projector", "lamp-off", 0, 1, 0, RCode::kNothingLit, 10},
     Ending{"wrong_screen", "projector", "wrong-screen", 0, 1, 0, RCode::kNothingLit, 10},
-    Ending{"out_of_focus", "right", "blur", 0, 1, 31, RCode::kOutOfFocus, 20},
+    Ending{"out_of_focus", "right", "blur", 0, 1, 35, RCode::kOutOfFocus, 20},
     Ending{"exposure_ignored", "left", "ignore", 0, 1, 0, RCode::kCameraSettings, 0.1},
     Ending{"bus_too_narrow", "cameras", "bandwidth", 0, 1, 1e-5, RCode::kBandwidth, 0.1},
     Ending{"display_always_late", "projector", "late", kAmongPatterns, 0, 0, RCode::kFlipLate, 20, true},
@@ -132,11 +134,12 @@ TEST_P(EndingFault, ends_the_capture_with_its_code_light_off_and_nothing_lost) {
     return;
   }
   CaptureBench bench(kind);
-  bench.fault(ending.device, ending.what, ending.at_s, ending.times, ending.amount);
+  const double at_s = ending.at_s > 0 ? among_patterns(kind) : 0;
+  bench.fault(ending.device, ending.what, at_s, ending.times, ending.amount);
   ASSERT_TRUE(bench.make());
   ASSERT_EQ(bench.run(), State::kFailed) << bench.story();
   EXPECT_EQ(bench.capture->error()->rcode, ending.rcode) << bench.story();
-  EXPECT_LE(bench.seconds(), ending.at_s + ending.ended_s) << bench.story();
+  EXPECT_LE(bench.seconds(), at_s + ending.ended_s) << bench.story();
   EXPECT_TRUE(bench.said("capture.failed code=" + to_string(ending.rcode))) << bench.story();
   EXPECT_FALSE(bench.rig->projector().light_is_on());
   EXPECT_FALSE(bench.memory.finished);
@@ -154,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Both, CaptureFault, testing::Values(Kind::kDisplay, Kin
 
 TEST_P(CaptureFault, unplugged_camera_that_comes_back_costs_no_verified_shot) {
   CaptureBench bench(GetParam());
-  bench.fault("left", "unplug", kAmongPatterns, 1, 0.5);
+  bench.fault("left", "unplug", among_patterns(GetParam()), 1, 0.5);
   ASSERT_TRUE(bench.make());
   ASSERT_EQ(bench.run(), State::kFailed) << bench.story();
   const int taken = bench.capture->progress().shots_done;
@@ -187,7 +190,7 @@ TEST_P(CaptureFault, frames_that_nobody_triggered_are_thrown_away) {
 
 TEST_P(CaptureFault, step_of_the_wall_clock_changes_nothing) {
   CaptureBench bench(GetParam());
-  bench.fault("clock", "step", kAmongPatterns, 1, -3'600);
+  bench.fault("clock", "step", among_patterns(GetParam()), 1, -3'600);
   ASSERT_TRUE(bench.make());
   ASSERT_EQ(bench.run(), State::kDone) << bench.story();
   EXPECT_TRUE(bench.capture->findings().retakes.empty());
@@ -214,7 +217,8 @@ TEST_P(CaptureFault, dark_scene_is_refused) {
 
 TEST_P(CaptureFault, somebody_who_stays_in_the_light_makes_the_look_be_taken_again) {
   CaptureBench bench(GetParam());
-  bench.plane.somebody = {RigTime(std::chrono::milliseconds(3'000)), RigTime(std::chrono::milliseconds(6'000))};
+  const RigTime comes(std::chrono::milliseconds(GetParam() == Kind::kDisplay ? 3'000 : 1'500));
+  bench.plane.somebody = {comes, comes + std::chrono::seconds(3)};
   ASSERT_TRUE(bench.make());
   ASSERT_EQ(bench.run(), State::kDone) << bench.story();
   EXPECT_TRUE(bench.said("code=" + to_string(RCode::kSceneMoved)) ||
@@ -224,7 +228,7 @@ TEST_P(CaptureFault, somebody_who_stays_in_the_light_makes_the_look_be_taken_aga
 
 TEST_P(CaptureFault, knocked_mirror_makes_the_look_be_taken_again_though_its_sensor_sees_nothing) {
   CaptureBench bench(GetParam());
-  bench.fault("mirror", "bump", kAmongPatterns, 1, 0.02);
+  bench.fault("mirror", "bump", among_patterns(GetParam()), 1, 0.02);
   ASSERT_TRUE(bench.make());
   ASSERT_EQ(bench.run(), State::kDone) << bench.story();
   EXPECT_TRUE(bench.said("capture.look_retake")) << bench.story();
