@@ -72,7 +72,8 @@ Result<Shown> show(const sim::PretendOptions& pretend, const ShowRequest& reques
     return fail(RCode::kWriteFailed, folder.string() + ": " + error.message(), error.value());
   }
   Json json{{"mirror_rad", request.mirror_rad},
-            {"prepare", ""},
+            {"prepare", request.prepare},
+            {"expose_for", request.expose_for_first ? "first" : "white"},
             {"pictures", Json::array()},
             {"photograph", request.photograph},
             {"panel_pixels", Json::array()}};

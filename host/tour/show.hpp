@@ -31,6 +31,9 @@ struct RoomView {
 
 struct ShowRequest {
   std::array<double, 2> mirror_rad{};
+  /// What a person does first, one for all pictures or one a picture: "target pose 3".
+  std::vector<std::string> prepare{"target on floor"};
+  bool expose_for_first = false;  ///< the first picture, not white, decides the exposure
   bool photograph = true;
   std::optional<RoomView> room;
   std::vector<Eigen::Vector2d> panel_pixels;
@@ -44,7 +47,7 @@ struct Shown {
   std::optional<calib::model::Pose> T_rig_target;
 };
 
-/// Shows `pictures` in order, the target lying where the scene has it. `folder` is created and keeps what was written.
+/// Shows `pictures` in order. `folder` is created and keeps what was written.
 /// Errors: those of sim::run; kWriteFailed, kDiskFull; kBadValue: an answer that says something else than asked.
 Result<Shown> show(const sim::PretendOptions& pretend, const ShowRequest& request,
                    const std::vector<Image<std::uint8_t>>& pictures, const std::filesystem::path& folder,

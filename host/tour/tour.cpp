@@ -21,10 +21,12 @@
 #include "host/exchange/write_file.hpp"
 #include "host/session/image_codec.hpp"
 #include "host/session/session.hpp"
-#include "host/sim/board_file.hpp"
+#include "host/sim/find_file.hpp"
 #include "host/tour/before_after.hpp"
 #include "host/tour/show.hpp"
 #include "proto/board/board.hpp"
+#include "proto/plan/plan.hpp"
+#include "proto/session/manifest.hpp"
 
 namespace raysteer::host::tour {
 namespace {
@@ -49,28 +51,81 @@ struct Prepared {
   calib::solve::Solution cameras;
 };
 
-Result<Prepared> prepare(const TourOptions& options, const sim::Listener& listener) {
-  const std::filesystem::path folder = options.folder / "cameras";
-  std::vector<std::string> words = options.pretend.arguments();
-  words.insert(words.begin(), "capture");
-  words.insert(words.end(), {"--looks", options.plan, "--out", folder.string()});
-  const Result<sim::Json> captured = sim::run(std::move(words), listener);
-  if (!captured) {
-    return captured.error();
+Image<std::uint8_t> uniform(const proto::board::Projector& projector, std::uint8_t grey) {
+  Image<std::uint8_t> picture(projector.width, projector.height);
+  picture.fill(grey);
+  return picture;
+}
+
+/// The text of a board or a plan, by name or file; `file` becomes its path.
+Result<std::string> text_of(const std::string& kind, const std::string& name, std::string& file) {
+  const auto found = sim::find_file(kind, name);
+  if (!found) {
+    return found.error();
   }
-  const auto board_file = sim::board_file(options.pretend.board);
-  if (!board_file) {
-    return board_file.error();
-  }
-  const auto text = exchange::read_file(*board_file);
+  file = found->string();
+  return exchange::read_file(*found);
+}
+
+/// The board in each of the plan's poses, by the room's light alone: the projector's would light a part of it, and that
+/// too brightly. A session, so that it is calibrated from as any other.
+Status wave(const TourOptions& options, const proto::board::Board& board, const sim::Listener& listener) {
+  std::string file;
+  const auto text = text_of("plans", options.plan, file);
   if (!text) {
     return text.error();
   }
-  auto board = proto::board::read_board(*text, board_file->string());
+  const auto plan = proto::plan::read_plan(*text, file);
+  if (!plan) {
+    return plan.error();
+  }
+  if (plan->targets.empty()) {
+    return fail(RCode::kMissingKey, file + ": no [[target]]");
+  }
+  proto::session::Manifest manifest;
+  manifest.name = "cameras";
+  manifest.sequence = {.panel_width = board.projector.width,
+                       .panel_height = board.projector.height,
+                       .blocks = {{.kind = PatternKind::kBlack}}};
+  manifest.targets = {{.spec = plan->targets.front().spec, .looks = {}}};
+  for (const proto::board::Camera& camera : board.cameras) {
+    manifest.cameras.push_back({.name = camera.name,
+                                .files = camera.name + "/{look}.raw",
+                                .first_index = 0,
+                                .width = camera.width,
+                                .height = camera.height,
+                                .bits = camera.bits <= 8 ? 8 : 16});
+  }
+  ShowRequest request;
+  request.mirror_rad = options.mirror_rad;
+  request.prepare.clear();
+  request.expose_for_first = true;
+  std::vector<Image<std::uint8_t>> pictures;
+  for (std::size_t i = 0; i < plan->looks.size(); ++i) {
+    request.prepare.push_back(plan->looks[i].prepare);
+    manifest.looks.push_back({.name = std::to_string(i), .command = {}, .note = plan->looks[i].prepare});
+    pictures.push_back(uniform(board.projector, 0));
+  }
+  const std::filesystem::path folder = options.folder / "cameras";
+  const auto shown = show(options.pretend, request, pictures, folder, listener);
+  if (!shown) {
+    return shown.error();
+  }
+  return exchange::write_file(folder / "session.toml", proto::session::write_manifest(manifest));
+}
+
+Result<Prepared> prepare(const TourOptions& options, const sim::Listener& listener) {
+  std::string file;
+  const auto text = text_of("boards", options.pretend.board, file);
+  if (!text) {
+    return text.error();
+  }
+  auto board = proto::board::read_board(*text, file);
   if (!board) {
     return std::move(board).error();
   }
-  const auto session = session::Session::open(folder / "session.toml");
+  RAYSTEER_TRY(wave(options, *board, listener));
+  const auto session = session::Session::open(options.folder / "cameras" / "session.toml");
   if (!session) {
     return session.error();
   }
@@ -168,12 +223,6 @@ Result<look::Sight> sight_of(const Prepared& prepared, const target::DiscGrid& g
   return sight;
 }
 
-Image<std::uint8_t> uniform(const proto::board::Projector& projector, std::uint8_t grey) {
-  Image<std::uint8_t> picture(projector.width, projector.height);
-  picture.fill(grey);
-  return picture;
-}
-
 /// The projector posed against the floor.
 struct Posed {
   look::Input input;
@@ -189,7 +238,8 @@ Result<Posed> pose(const TourOptions& options, const Prepared& prepared, const s
   for (int i = 0; i < grid.pictures(); ++i) {
     pictures.push_back(target::disc_picture(grid, projector.width, projector.height, i));
   }
-  const ShowRequest request{.mirror_rad = options.mirror_rad, .photograph = true, .room = {}, .panel_pixels = {}};
+  ShowRequest request;
+  request.mirror_rad = options.mirror_rad;
   const auto shown = show(options.pretend, request, pictures, options.folder / "discs", listener);
   if (!shown) {
     return shown.error();
@@ -339,10 +389,10 @@ Result<TourResult> tour(const TourOptions& options, const sim::Listener& listene
   pictures.push_back(bake::panel_picture(
       card, [&](const Eigen::Vector2d& x) { return bake::content_at(solution.panel, rectangle, x); }, projector.width,
       projector.height, projector.gamma));
-  ShowRequest request{.mirror_rad = options.mirror_rad,
-                      .photograph = false,
-                      .room = view_of(solution.T_rig_plane, rectangle),
-                      .panel_pixels = {}};
+  ShowRequest request;
+  request.mirror_rad = options.mirror_rad;
+  request.photograph = false;
+  request.room = view_of(solution.T_rig_plane, rectangle);
   for (const Eigen::Vector2d& corner : rectangle.corners()) {
     request.panel_pixels.push_back(sent->on_panel(rectangle.content(corner)));
   }

@@ -20,8 +20,9 @@ namespace fs = std::filesystem;
 
 struct Request {
   std::array<double, 2> mirror_rad{};
-  std::string prepare;
+  std::vector<std::string> prepare;  // one for all pictures, or one a picture
   std::vector<std::string> pictures;
+  bool expose_for_first = false;  // instead of for white
   std::optional<std::chrono::microseconds> exposure;
   bool photograph = true;
   std::optional<world::RoomView> room;
@@ -49,7 +50,8 @@ Result<Request> read_request(const fs::path& file) {
   if (!text) {
     return text.error();
   }
-  constexpr std::array kKnown{"mirror_rad", "prepare", "pictures", "exposure_us", "photograph", "room", "panel_pixels"};
+  constexpr std::array kKnown{"mirror_rad", "prepare", "pictures",     "exposure_us",
+                              "photograph", "room",    "panel_pixels", "expose_for"};
   try {
     const Json json = Json::parse(*text);
     for (const auto& [key, value] : json.items()) {
@@ -59,8 +61,20 @@ Result<Request> read_request(const fs::path& file) {
     }
     Request request;
     request.mirror_rad = {json.at("mirror_rad").at(0).get<double>(), json.at("mirror_rad").at(1).get<double>()};
-    request.prepare = json.value("prepare", "");
     request.pictures = json.at("pictures").get<std::vector<std::string>>();
+    if (const Json prepare = json.value("prepare", Json("")); prepare.is_array()) {
+      request.prepare = prepare.get<std::vector<std::string>>();
+    } else {
+      request.prepare = {prepare.get<std::string>()};
+    }
+    if (request.prepare.size() != 1 && request.prepare.size() != request.pictures.size()) {
+      return fail(RCode::kBadValue, file.string() + ": 'prepare' is one text, or one a picture");
+    }
+    const std::string expose_for = json.value("expose_for", "white");
+    if (expose_for != "white" && expose_for != "first") {
+      return fail(RCode::kBadValue, file.string() + ": 'expose_for' is \"white\" or \"first\"");
+    }
+    request.expose_for_first = expose_for == "first" && !request.pictures.empty();
     if (json.contains("exposure_us")) {
       request.exposure = std::chrono::microseconds(json["exposure_us"].get<std::int64_t>());
     }
@@ -130,6 +144,9 @@ struct Stage {
   std::optional<std::chrono::microseconds> exposure;
 
   Status one(std::size_t k, const Image<std::uint8_t>& content, Json& shown) {
+    if (request.prepare.size() > 1) {
+      RAYSTEER_TRY(rig.prepare(request.prepare[k]));
+    }
     RAYSTEER_TRY(showing.show(content.view()));
     const std::string number = std::to_string(k);
     if (request.photograph) {
@@ -171,14 +188,14 @@ Result<Json> show(const ShowRequest& asked, Say& say) {
   RAYSTEER_TRY(make_folders(asked.out));
   rig::PretendRig& rig = *loaded->rig;
   const scene::Scene& scene = rig.world().scene();
-  RAYSTEER_TRY(rig.prepare(request->prepare));
+  RAYSTEER_TRY(rig.prepare(request->prepare.front()));
   rig::Showing showing(rig, settle_timeout(loaded->board));
   RAYSTEER_TRY(showing.aim(request->mirror_rad));
   Stage stage{rig, showing, *request, asked.out, request->exposure};
   if (request->photograph && !stage.exposure) {
     Image<std::uint8_t> white(loaded->board.projector.width, loaded->board.projector.height);
     white.fill(255);
-    RAYSTEER_TRY(showing.show(white.view()));
+    RAYSTEER_TRY(showing.show(request->expose_for_first ? contents.front().view() : std::as_const(white).view()));
     const Result<std::chrono::microseconds> exposure = showing.choose_exposure();
     RAYSTEER_TRY(exposure);
     stage.exposure = *exposure;
