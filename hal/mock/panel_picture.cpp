@@ -13,6 +13,22 @@ std::array<float, 256> panel_response(double gamma, double black) {
   return light;
 }
 
+namespace {
+
+/// Patterns are asked for in light (hal/base/pattern.hpp); a device makes up for its own response: the code that comes
+/// nearest.
+std::uint8_t code_for(double value, const std::array<float, 256>& response) {
+  const double light = response.front() + (response.back() - response.front()) * value;
+  const auto above = std::ranges::lower_bound(response, light);
+  if (above == response.begin() || above == response.end()) {
+    return above == response.end() ? 255 : 0;
+  }
+  const auto nearest = *above - light < light - *(above - 1) ? above : above - 1;
+  return static_cast<std::uint8_t>(nearest - response.begin());
+}
+
+}  // namespace
+
 std::shared_ptr<const PanelPicture> pattern_picture(const Pattern& pattern, int width, int height,
                                                     const std::array<float, 256>& response) {
   auto picture = std::make_shared<PanelPicture>();
@@ -23,7 +39,7 @@ std::shared_ptr<const PanelPicture> pattern_picture(const Pattern& pattern, int 
   const int length = along_x ? width : height;
   for (int i = 0; i < length; ++i) {
     const double value = along_x ? pattern.value(i, 0) : pattern.value(0, i);
-    picture->profile.push_back(static_cast<std::uint8_t>(std::lround(255 * value)));
+    picture->profile.push_back(code_for(value, response));
   }
   picture->response = response;
   return picture;
