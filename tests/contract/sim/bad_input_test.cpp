@@ -72,7 +72,9 @@ TEST_F(SimProgram, says_when_the_projector_lights_nothing) {
 }
 
 TEST_F(SimProgram, says_when_the_mirror_never_settles) {
-  expect_refused(capture({"--fault", "mirror.ring"}), "R0710", 7, "");
+  const fs::path plan =
+      write("plan.toml", "format = 1\nname = \"p\"\n[[look]]\nname = \"aside\"\nmirror_mrad = [50, 0]\n");
+  expect_refused(capture({"--fault", "mirror.stuck", "--looks", plan.string()}), "R0710", 7, "aside");
 }
 
 TEST_F(SimProgram, says_when_it_cannot_write) {
