@@ -27,9 +27,6 @@ bool Findings::is_disputed(int frame) const { return std::ranges::find(disputed,
 
 namespace {
 
-// 280 tiles are 160,000 samples, 5 % of a frame of 3 Mpx.
-constexpr int kMostTiles = 280;
-
 // The cause before its consequences: a nudge makes the one pair it falls into contradict itself, and fine stripes
 // miss coarse ones.
 void settle(Findings& findings) {
@@ -61,7 +58,7 @@ SequenceReport judge(const SampledSet& set) {
 
 }  // namespace
 
-SequenceCheck::SequenceCheck(const PatternSequence& sequence, int width, int height, int bits)
+SequenceCheck::SequenceCheck(const PatternSequence& sequence, int width, int height, int bits, int most_tiles)
     : sequence_(sequence), bits_(bits), side_(std::min({kTileSide, width, height})) {
   samples_.resize(static_cast<std::size_t>(sequence.frames()));
   if (side_ < 1) {
@@ -70,7 +67,7 @@ SequenceCheck::SequenceCheck(const PatternSequence& sequence, int width, int hei
   // About square spacing; rows of tiles stand in a brick bond (by the golden section), so that no vertical edge of a
   // stripe can hide between the columns of tiles.
   const double spacing =
-      std::max<double>(side_, std::sqrt(static_cast<double>(width) * height / static_cast<double>(kMostTiles)));
+      std::max<double>(side_, std::sqrt(static_cast<double>(width) * height / static_cast<double>(most_tiles)));
   const int down = std::max(1, static_cast<int>(height / spacing));
   const int across = std::max(1, static_cast<int>(width / spacing));
   for (int row = 0; row < down; ++row) {

@@ -87,8 +87,9 @@ TEST_P(CaptureRun, records_what_each_shot_was_taken_with) {
 TEST_P(CaptureRun, gives_the_same_session_byte_for_byte_from_the_same_seed) {
   std::array<Folder, 2> folders;
   std::size_t frames = 0;
+  const std::uint64_t same = seed();
   for (const Folder& folder : folders) {
-    CaptureBench bench(GetParam());
+    CaptureBench bench(GetParam(), same);
     SessionWriter writer(folder.path);
     bench.sink = &writer;
     ASSERT_TRUE(bench.make());
