@@ -36,6 +36,14 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
       best = candidate;
     }
   }
+  if (best.empty()) {  // the right quantity in a wrong unit: mirror_deg for mirror_mrad
+    const auto quantity = [](std::string_view name) { return name.substr(0, name.rfind('_') + 1); };
+    for (const std::string_view candidate : known) {
+      if (!quantity(word).empty() && quantity(candidate) == quantity(word)) {
+        return candidate;
+      }
+    }
+  }
   return best;
 }
 

@@ -39,6 +39,7 @@ namespace target = calib::target;
 constexpr double kWidth = 0.5;      // metres
 constexpr double kHeight = 0.3125;  // as in algorithms 10.4
 constexpr int kDiscsAcross = 9;
+constexpr std::size_t kMostPoses = 10;  // of the plan's: more cost seconds each and are not what limits the corners
 
 Status poll(const sim::Listener& listener) {
   return listener.cancelled && listener.cancelled() ? Status(fail(RCode::kCancelled)) : ok();
@@ -101,7 +102,7 @@ Status wave(const TourOptions& options, const proto::board::Board& board, const 
   request.prepare.clear();
   request.expose_for_first = true;
   std::vector<Image<std::uint8_t>> pictures;
-  for (std::size_t i = 0; i < plan->looks.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(kMostPoses, plan->looks.size()); ++i) {
     request.prepare.push_back(plan->looks[i].prepare);
     manifest.looks.push_back({.name = std::to_string(i), .command = {}, .note = plan->looks[i].prepare});
     pictures.push_back(uniform(board.projector, 0));

@@ -26,6 +26,8 @@ TEST(Nearest, finds_the_word_that_was_meant) {
 TEST(Nearest, suggests_nothing_when_nothing_is_near) {
   constexpr std::array<std::string_view, 4> known{"check", "info", "calibrate", "scan"};
   EXPECT_EQ(nearest("elephant", known), "");
+  const std::vector<std::string_view> keys{"name", "mirror_mrad"};
+  EXPECT_EQ(nearest("mirror_deg", keys), "mirror_mrad");  // another unit
   EXPECT_EQ(nearest("x", known), "");
   EXPECT_EQ(did_you_mean("elephant", known), "");
 }
