@@ -8,7 +8,11 @@ install(FILES packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/changelog.gz
   COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/packaging/changelog > ${CMAKE_BINARY_DIR}/changelog.gz
   DEPENDS packaging/changelog VERBATIM)
-add_custom_target(changelog ALL DEPENDS ${CMAKE_BINARY_DIR}/changelog.gz)
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/raysteer-sim.1.gz
+  COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/packaging/raysteer-sim.1 > ${CMAKE_BINARY_DIR}/raysteer-sim.1.gz
+  DEPENDS packaging/raysteer-sim.1 VERBATIM)
+add_custom_target(changelog ALL DEPENDS ${CMAKE_BINARY_DIR}/changelog.gz ${CMAKE_BINARY_DIR}/raysteer-sim.1.gz)
+install(FILES ${CMAKE_BINARY_DIR}/raysteer-sim.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Manual page, completions and JSON schemas come from the program's own command tree. Sanitized programs are not
