@@ -58,8 +58,9 @@ SequenceReport judge(const SampledSet& set) {
 
 }  // namespace
 
-SequenceCheck::SequenceCheck(const PatternSequence& sequence, int width, int height, int bits, int most_tiles)
-    : sequence_(sequence), bits_(bits), side_(std::min({kTileSide, width, height})) {
+SequenceCheck::SequenceCheck(const PatternSequence& sequence, const Region& within, int bits, int most_tiles)
+    : sequence_(sequence), bits_(bits), side_(std::min({kTileSide, within.width, within.height})) {
+  const auto [left, top, width, height] = within;
   samples_.resize(static_cast<std::size_t>(sequence.frames()));
   if (side_ < 1) {
     return;
@@ -76,8 +77,9 @@ SequenceCheck::SequenceCheck(const PatternSequence& sequence, int width, int hei
       const double room_x = static_cast<double>(width) / across - side_;
       const double room_y = static_cast<double>(height) / down - side_;
       const double shift_y = (column * std::numbers::phi) - std::floor(column * std::numbers::phi);
-      tiles_.push_back({static_cast<int>(column * static_cast<double>(width) / across + offset * std::max(room_x, 0.0)),
-                        static_cast<int>(row * static_cast<double>(height) / down + shift_y * std::max(room_y, 0.0))});
+      tiles_.push_back(
+          {left + static_cast<int>(column * static_cast<double>(width) / across + offset * std::max(room_x, 0.0)),
+           top + static_cast<int>(row * static_cast<double>(height) / down + shift_y * std::max(room_y, 0.0))});
     }
   }
 }

@@ -13,6 +13,7 @@
 
 #include "hal/base/image.hpp"
 #include "hal/base/pattern.hpp"
+#include "hal/base/region.hpp"
 #include "hal/base/result.hpp"
 
 namespace raysteer::calib::decode {
@@ -35,13 +36,14 @@ struct SequenceReport {
 
 class SequenceCheck {
  public:
-  /// Sizes in camera px. `bits`: 8 or 16, the depth of the pixels; files of 16 bits that hold 10, 12 or 14 bits are
-  /// recognised by their largest value. Fewer tiles cost less and find less of what is small.
-  SequenceCheck(const PatternSequence& sequence, int width, int height, int bits, int most_tiles = kMostTiles);
+  /// `within`: where the tiles lie, camera px; best the lit_region, since tiles that the light does not reach tell
+  /// nothing. `bits`: 8 or 16, the depth of the pixels; files of 16 bits that hold 10, 12 or 14 bits are recognised by
+  /// their largest value. Fewer tiles cost less and find less of what is small.
+  SequenceCheck(const PatternSequence& sequence, const Region& within, int bits, int most_tiles = kMostTiles);
   /// 160,000 samples, 5 % of a frame of 3 Mpx.
   static constexpr int kMostTiles = 280;
 
-  /// Takes what it needs of frame `index` of the sequence. The frame has the size given to the constructor.
+  /// Takes what it needs of frame `index` of the sequence. The frame holds the region given to the constructor.
   void add(int index, ImageView<const std::uint8_t> frame);
   void add(int index, ImageView<const std::uint16_t> frame);
 

@@ -97,6 +97,7 @@ class Capture::Engine {
   void make_safe();
   void stop(Error error);
   void fresh_look();
+  void begin_record(References references);
   const proto::plan::PlannedLook& look() const { return plan_.looks[look_]; }
   int frames() const { return static_cast<int>(patterns_.size()); }
 

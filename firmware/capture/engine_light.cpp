@@ -152,8 +152,7 @@ Status Capture::Engine::adopt_references(References references, RigTime now) {
                        (std::ranges::any_of(record_.shots, other_exposure) ||
                         !judge_stillness(*record_.references, {references.eyes[0].white, references.eyes[1].white}));
   if (!record_.references || changed) {
-    fresh_look();
-    record_.references = std::move(references);
+    begin_record(std::move(references));
   }
   for (std::size_t k = 0; k < 2; ++k) {
     const int index = outcomes_[k].order.pattern;

@@ -80,10 +80,15 @@ void Capture::Engine::fresh_look() {
   record_.samples.resize(count);
   record_.shots.resize(count);
   record_.retakes.resize(count);
-  for (const hal::CameraInfo& info : infos_) {
-    record_.checks.push_back(std::make_unique<calib::decode::SequenceCheck>(sequence_, info.width, info.height,
-                                                                            info.bits > 8 ? 16 : 8, kCheckTiles));
+}
+
+void Capture::Engine::begin_record(References references) {
+  fresh_look();
+  for (std::size_t eye = 0; eye < infos_.size(); ++eye) {
+    record_.checks.push_back(std::make_unique<calib::decode::SequenceCheck>(
+        sequence_, grids_[eye].around(references.eyes[eye].lit), infos_[eye].bits > 8 ? 16 : 8, kCheckTiles));
   }
+  record_.references = std::move(references);
 }
 
 }  // namespace raysteer::firmware::capture

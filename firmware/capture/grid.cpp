@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <variant>
 
 #include "hal/base/result.hpp"
@@ -12,6 +13,17 @@ namespace raysteer::firmware::capture {
 namespace {
 
 constexpr double kPlaces = 4000;
+constexpr double kStray = 0.01;  // of the places, on each side
+
+struct Span {
+  int first = 0;
+  int count = 0;
+};
+
+Span span_of(std::vector<float> values, int end) {
+  const int first = static_cast<int>(quantile(values, kStray));
+  return {first, std::min(end, static_cast<int>(quantile(std::move(values), 1 - kStray)) + 1) - first};
+}
 
 }  // namespace
 
@@ -42,6 +54,22 @@ Samples Grid::sample(const Frame& frame) const {
         return samples;
       },
       frame);
+}
+
+Region Grid::around(std::span<const std::uint32_t> places) const {
+  if (places.empty()) {
+    return {0, 0, width_, height_};
+  }
+  std::vector<float> columns;
+  std::vector<float> rows;
+  for (const std::uint32_t place : places) {
+    const auto pixel = static_cast<std::int64_t>(places_[place]);
+    columns.push_back(static_cast<float>(pixel % width_));
+    rows.push_back(static_cast<float>(pixel / width_));
+  }
+  const Span across = span_of(std::move(columns), width_);
+  const Span down = span_of(std::move(rows), height_);
+  return {across.first, down.first, across.count, down.count};
 }
 
 float quantile(std::vector<float> values, double share) {

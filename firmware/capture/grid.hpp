@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "hal/base/frame.hpp"
+#include "hal/base/region.hpp"
 
 namespace raysteer::firmware::capture {
 
@@ -24,6 +26,8 @@ class Grid {
   /// The frame has the grid's size (RAYSTEER_CHECK).
   Samples sample(const Frame& frame) const;
   std::size_t size() const { return places_.size(); }
+  /// What `places` of the grid cover, but for a few stray ones; everything where there are none. Camera px.
+  Region around(std::span<const std::uint32_t> places) const;
 
  private:
   int width_ = 0;

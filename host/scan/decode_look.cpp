@@ -8,6 +8,7 @@
 
 #include "calib/decode/sequence_check.hpp"
 #include "hal/base/pattern.hpp"
+#include "host/session/lit_part.hpp"
 
 namespace raysteer::host::scan {
 namespace {
@@ -34,7 +35,11 @@ Result<DecodedLook> decode(const Session& session, int camera, int look, const c
   if (!decoder) {
     return with_context(std::move(decoder).error(), who);
   }
-  calib::decode::SequenceCheck check(sequence, session.width(camera), session.height(camera), session.bits(camera));
+  const Result<Region> lit = session::lit_part(session, camera, look);
+  if (!lit) {
+    return lit.error();
+  }
+  calib::decode::SequenceCheck check(sequence, *lit, session.bits(camera));
   DecodedLook decoded;
   Image<Pixel> frame;
   const std::vector<Pattern> patterns = sequence.patterns();

@@ -51,25 +51,26 @@ Result<std::size_t> find_camera(const Session& session, int camera, const calib:
               "the session has a camera '" + name + "', the calibration " + (known.empty() ? "none" : known));
 }
 
-Result<Image<Sighting>> locate_and_drop(DecodedLook& look, int panel_width, int panel_height) {
-  Result<Image<Sighting>> sightings = calib::scene::locate(look.codes, panel_width, panel_height);
+Result<Image<Sighting>> locate_and_drop(DecodedLook& look, int panel_width, int panel_height, int spacing) {
+  Result<Image<Sighting>> sightings = calib::scene::locate(look.codes, panel_width, panel_height, spacing);
   look.codes = {};
   return sightings;
 }
 
 Result<calib::scene::Matches> match_views(std::vector<DecodedLook>& looks, int panel_width, int panel_height) {
+  const int spacing = calib::scene::node_spacing(looks.front().codes, looks.back().codes);
   if (looks.size() == 1) {
-    Result<Image<Sighting>> only = locate_and_drop(looks[0], panel_width, panel_height);
+    Result<Image<Sighting>> only = locate_and_drop(looks[0], panel_width, panel_height, spacing);
     if (!only) {
       return std::move(only).error();
     }
-    return calib::scene::match_projector(*only);
+    return calib::scene::match_projector(*only, spacing);
   }
   Result<Image<Sighting>> left = Image<Sighting>();
   Result<Image<Sighting>> right = Image<Sighting>();
   {
-    const std::jthread other([&] { right = locate_and_drop(looks[1], panel_width, panel_height); });
-    left = locate_and_drop(looks[0], panel_width, panel_height);
+    const std::jthread other([&] { right = locate_and_drop(looks[1], panel_width, panel_height, spacing); });
+    left = locate_and_drop(looks[0], panel_width, panel_height, spacing);
   }
   if (!left || !right) {
     return std::move(left ? right : left).error();

@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "host/session/lit_part.hpp"
+
 namespace raysteer::host::session {
 namespace {
 
@@ -17,7 +19,11 @@ constexpr std::size_t kThreads = 2;
 
 // Every frame of one look of one camera, through a check. Frames that cannot be read end it.
 Result<SequenceReport> read_look(const Session& session, int camera, int look, const std::function<bool()>& on_frame) {
-  SequenceCheck check(session.manifest().sequence, session.width(camera), session.height(camera), session.bits(camera));
+  const Result<Region> lit = lit_part(session, camera, look);
+  if (!lit) {
+    return lit.error();
+  }
+  SequenceCheck check(session.manifest().sequence, *lit, session.bits(camera));
   Image<std::uint8_t> narrow;
   Image<std::uint16_t> wide;
   for (int index = 0; index < session.frames_per_look(); ++index) {

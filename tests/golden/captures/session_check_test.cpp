@@ -55,7 +55,7 @@ class CapturedSession : public testing::Test {
   }
 
   static SequenceReport judge(const Session& session, const Frames& frames) {
-    SequenceCheck check(session.manifest().sequence, session.width(0), session.height(0), 8);
+    SequenceCheck check(session.manifest().sequence, {0, 0, session.width(0), session.height(0)}, 8);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       check.add(static_cast<int>(k), frames[k]->view());
     }

@@ -155,7 +155,7 @@ class Wall {
 };
 
 SequenceReport judge(const Set& set) {
-  SequenceCheck check(set.sequence, kWidth, kHeight, set.bits());
+  SequenceCheck check(set.sequence, {0, 0, kWidth, kHeight}, set.bits());
   for (std::size_t k = 0; k < set.frames.size(); ++k) {
     const int index = static_cast<int>(k);
     if (set.bits() == 8) {
@@ -303,7 +303,7 @@ TEST(CorruptedSets, with_faulty_steps_are_refused_with_their_own_name) {
 
 TEST(SequenceCheck, a_frame_that_did_not_come_is_refused) {
   const Set set = Wall(8).show(gray_sequence(false), 255);
-  SequenceCheck check(set.sequence, kWidth, kHeight, 16);
+  SequenceCheck check(set.sequence, {0, 0, kWidth, kHeight}, 16);
   for (std::size_t k = 1; k < set.frames.size(); ++k) {
     check.add(static_cast<int>(k), ImageView<const std::uint16_t>(set.frames[k].data(), kWidth, kHeight));
   }

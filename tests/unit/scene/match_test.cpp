@@ -17,12 +17,11 @@ constexpr double kPitch = 1.6;  // camera px per projector px
 /// A camera looking straight at a wall: x = (u - 10) / pitch, y likewise with a shear.
 struct Wall {
   double shift = 10;
-  Eigen::Vector2d panel(double u, double v) const {
-    return {(u - shift) / kPitch, (v - 7 + 0.1 * (u - shift)) / kPitch};
-  }
+  double pitch = kPitch;
+  Eigen::Vector2d panel(double u, double v) const { return {(u - shift) / pitch, (v - 7 + 0.1 * (u - shift)) / pitch}; }
   Eigen::Vector2d camera(double i, double j) const {
-    const double u = kPitch * i + shift;
-    return {u, kPitch * j + 7 - 0.1 * (u - shift)};
+    const double u = pitch * i + shift;
+    return {u, pitch * j + 7 - 0.1 * (u - shift)};
   }
 };
 
@@ -121,6 +120,49 @@ TEST(Match, counts_pixels_that_only_neighbours_would_add) {
   for (const Match& m : matches.measured) {
     EXPECT_NE(m.i, 30);
   }
+}
+
+// A rig's camera sees the whole room, its projector a part of it in finer pixels.
+TEST(Match, finds_nodes_where_one_camera_pixel_covers_several_projector_pixels) {
+  const Wall wall{.shift = 10, .pitch = 1 / 2.75};
+  const double sigma = 0.05;
+  const decode::CodeMap map = seen(wall, wall, kSize, sigma, 21);
+  const int spacing = node_spacing(map, map);
+  EXPECT_EQ(spacing, 4);
+  const auto sightings = locate(map, 300, 300, spacing);
+  ASSERT_TRUE(sightings);
+  EXPECT_EQ(sightings->width(), 75);
+  double squares = 0, normalised = 0;
+  int n = 0;
+  for (int j = 2; j < 70; ++j) {
+    for (int i = 2; i < 70; ++i) {
+      const Sighting& s = (*sightings)(i, j);
+      ASSERT_GT(s.pixels, 0);
+      const Eigen::Vector2d miss = s.q.cast<double>() - wall.camera(i * spacing, j * spacing);
+      Eigen::Matrix2d c;
+      c << s.cxx, s.cxy, s.cxy, s.cyy;
+      squares += miss.squaredNorm() / 2;
+      normalised += miss.dot(c.ldlt().solve(miss)) / 2;
+      ++n;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / n), 0.75 * wall.pitch * sigma);
+  EXPECT_GT(normalised / n, 0.6);
+  EXPECT_LT(normalised / n, 1.5);
+  const Matches with_projector = match_projector(*sightings, spacing);
+  for (const Match& m : with_projector.measured) {
+    EXPECT_EQ(m.q_right, Eigen::Vector2d(spacing * m.i, spacing * m.j));
+  }
+}
+
+TEST(Match, the_coarser_view_decides_how_far_nodes_are_apart) {
+  const Wall fine{.shift = 10, .pitch = 1};
+  const Wall coarse{.shift = 10, .pitch = 0.5};
+  const decode::CodeMap close = seen(fine, fine, kSize, 0, 1);
+  const decode::CodeMap wide = seen(coarse, coarse, kSize, 0, 1);
+  EXPECT_EQ(node_spacing(close, close), 1);
+  EXPECT_EQ(node_spacing(close, wide), 3);
+  EXPECT_EQ(node_spacing(wide, close), 3);
 }
 
 TEST(Match, refuses_a_sequence_that_codes_one_axis) {
