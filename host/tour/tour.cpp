@@ -143,6 +143,7 @@ Result<Prepared> prepare(const TourOptions& options, const sim::Listener& listen
     return fail(RCode::kCameraCount, "the tour needs two cameras");
   }
   calib::solve::SolveOptions solving;
+  solving.lens = model::LensModel::kBc4;  // as boards draw lenses; choosing among models takes a minute on some rigs
   solving.progress = [&](std::string_view, double done) {
     if (listener.progress) {
       listener.progress("calibrating cameras", done);
