@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <string>
 
+#include "calib/solve/quiet.hpp"
 #include "host/tour/tour.hpp"
 
 namespace {
@@ -62,6 +63,7 @@ void run(const std::string& board, int seed, const fs::path& scratch, Totals& to
 }  // namespace
 
 int main(int argc, char** argv) {
+  calib::solve::quiet_solver();
   std::uint64_t seed = 1;
   bool brief = false;
   for (int i = 1; i < argc; ++i) {
