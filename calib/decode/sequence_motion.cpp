@@ -17,6 +17,10 @@ constexpr int kIterations = 6;
 constexpr double kLongestShift = 6;
 // The shift's own standard deviation must be below this, px, for the shift to count as known.
 constexpr double kMostUncertain = 0.15;
+// Stripes and steps of a sinusoid light a place alike to this part only (blur, stray light). On a bare floor, whose
+// level falls off by less than that a pixel, it passes for movement: this much of it, px, is too much.
+constexpr double kUnlikeLight = 0.005;
+constexpr double kMostBiased = 0.5;
 // "Changed": more than this many levels and this part of the local level.
 constexpr float kChangedLevels = 16;
 constexpr float kChangedPart = 0.25F;
@@ -167,7 +171,10 @@ Shift ShiftMeter::measure(const Tiles& moved) const {
     // Smoothing makes about 12 neighbours say the same.
     const double variance = 12 * squares / weights;
     const double worst = variance * std::max(sums[0], sums[2]) / std::max(determinant, 1e-12);
-    shift.known = determinant > 0 && worst < kMostUncertain * kMostUncertain;
+    const double mean = (sums[0] + sums[2]) / 2;
+    const double weakest = mean - std::sqrt(std::max(mean * mean - determinant, 0.0));  // the smaller eigenvalue
+    const double bias = kUnlikeLight * typical_ / std::sqrt(std::max(weakest / weights, 1e-12));
+    shift.known = determinant > 0 && worst < kMostUncertain * kMostUncertain && bias < kMostBiased;
     if (!shift.known || iteration == kIterations) {
       std::size_t changed = 0;
       for (std::size_t n = 0; n < places.size(); ++n) {

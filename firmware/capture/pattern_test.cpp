@@ -13,7 +13,9 @@ using Frames = std::vector<std::optional<EyeSamples>>;
 
 constexpr float kContradiction = 0.08F;      ///< of a place's range
 constexpr double kMostContradicting = 0.03;  ///< of the places
-constexpr float kNoise = 7;                  ///< contradictions begin at so many medians: five standard deviations
+constexpr double kNoiseShare = 0.75;         ///< noise is what this share of the places stays below; the median is 0 of
+                                             ///< a dim picture, whose noise is less than a level
+constexpr float kNoise = 4.1F;               ///< contradictions begin at so many of it: five standard deviations
 constexpr float kMostNoise = 0.25F;          ///< ... but not beyond this: half of a picture may be wrong
 constexpr double kJudgedStripe_px = 8;       ///< finer ones a camera may rightly not resolve
 
@@ -49,7 +51,7 @@ double share_beyond(const std::vector<float>& departures, float limit) {
   return departures.empty() ? 0 : static_cast<double>(beyond) / static_cast<double>(departures.size());
 }
 
-float limit_for(float median) { return std::clamp(kNoise * median, kContradiction, kMostNoise); }
+float limit_for(float noise) { return std::clamp(kNoise * noise, kContradiction, kMostNoise); }
 
 void report(std::vector<WrongFrame>& wrong, WrongFrame found) {
   const auto same = std::ranges::find(wrong, found.index, &WrongFrame::index);
@@ -77,11 +79,11 @@ Pair compare(const Normalised& places, const Frames& frames, int a, int b) {
 }
 
 void judge_complements(const std::vector<Pair>& pairs, std::vector<WrongFrame>& wrong) {
-  std::vector<float> medians;
+  std::vector<float> noises;
   for (const Pair& pair : pairs) {
-    medians.push_back(quantile(pair.departures, 0.5));
+    noises.push_back(quantile(pair.departures, kNoiseShare));
   }
-  const float limit = limit_for(quantile(medians, 0.25));  // noise is what the quieter pairs have
+  const float limit = limit_for(quantile(noises, 0.25));  // noise is what the quieter pairs have
   for (const Pair& pair : pairs) {
     const double share = share_beyond(pair.departures, limit);
     if (share > kMostContradicting) {
@@ -217,11 +219,11 @@ std::vector<std::vector<float>> departures_of(const Normalised& places, const Fr
 void judge_steps(const Normalised& places, const Frames& frames, Steps steps, std::vector<WrongFrame>& wrong) {
   while (steps.frames.size() >= 4) {
     const std::vector<std::vector<float>> departures = departures_of(places, frames, steps);
-    std::vector<float> medians;
+    std::vector<float> noises;
     for (const std::vector<float>& departure : departures) {
-      medians.push_back(quantile(departure, 0.5));
+      noises.push_back(quantile(departure, kNoiseShare));
     }
-    const float limit = limit_for(quantile(medians, 0.25));  // noise is what the quieter steps have
+    const float limit = limit_for(quantile(noises, 0.25));  // noise is what the quieter steps have
     std::size_t worst = 0;
     double most = 0;
     for (std::size_t k = 0; k < departures.size(); ++k) {
