@@ -1,7 +1,7 @@
 # cmake --build --preset release --target package: raysteer_<version>_<arch>.deb, the host tool and the pretend rig.
 include(GNUInstallDirs)
 install(TARGETS raysteer raysteer-sim RUNTIME)
-install(DIRECTORY boards scenes plans DESTINATION ${CMAKE_INSTALL_DATADIR}/raysteer)
+install(DIRECTORY boards scenes surveys stations plans DESTINATION ${CMAKE_INSTALL_DATADIR}/raysteer)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Debian keeps its changelog compressed; -n leaves the time out, so that the package's bytes do not depend on it.

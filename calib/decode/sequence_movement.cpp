@@ -22,8 +22,9 @@ constexpr double kMostShift = 1.5;
 constexpr double kMostChanged = 0.04;
 // A frame that is bright in less of the lit view tells nothing: the rim of a sliver passes for movement.
 constexpr double kLeastBright = 0.25;
-// A place shows the white frame's level from this part of its range on; less is the blurred rim of a stripe, which passes
-// for movement where a stripe is a few camera pixels wide. Noise widens the range of a dim place by some per cent.
+// A place shows the white frame's level from this part of its range on; less is the blurred rim of a stripe, which
+// passes for movement where a stripe is a few camera pixels wide. Noise widens the range of a dim place by some per
+// cent.
 constexpr float kFullyBright = 0.85F;
 
 // Groups of frames that add up to the same picture whatever they show: pattern and inverse, all steps of a sinusoid,

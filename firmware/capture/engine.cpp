@@ -40,8 +40,9 @@ Capture::Engine::Engine(const hal::Rig& rig, proto::plan::Plan plan, PatternSequ
       log_(log),
       shooter_(rig),
       look_done_(plan_.looks.size()) {
-  white_ = find_pattern(shown_, PatternKind::kWhite);
   black_ = find_pattern(shown_, PatternKind::kBlack);
+  dark_ = std::ranges::all_of(patterns_, [](const Pattern& p) { return p.block.kind == PatternKind::kBlack; });
+  white_ = dark_ ? black_ : find_pattern(shown_, PatternKind::kWhite);
 }
 
 State Capture::Engine::tick(RigTime now) {

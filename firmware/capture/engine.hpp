@@ -106,6 +106,8 @@ class Capture::Engine {
   PatternSequence sequence_;  ///< recorded
   PatternSequence shown_;     ///< with white and black, if the sequence lacks them
   std::vector<Pattern> patterns_;
+  /// Nothing but black is asked for: pictures by the room's light, which then takes white's place in every judgement.
+  bool dark_ = false;
   int white_ = 0;
   int black_ = 0;
   Options options_;

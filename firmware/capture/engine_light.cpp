@@ -112,7 +112,8 @@ Status Capture::Engine::end_references(RigTime now) {
       return begin_references(now);
     }
   }
-  References references = make_references(seen_[0], seen_[1]);
+  const EyeSamples none = {Samples(seen_[1][0].size()), Samples(seen_[1][1].size())};
+  References references = make_references(seen_[0], dark_ ? none : seen_[1]);
   const ExposureVerdict verdict = judge_exposure(references);
   if (!exposure_fixed() && verdict != ExposureVerdict::kGood && ++exposure_tries_ < kMostExposureTries) {
     const double factor = exposure_factor(references);
@@ -178,7 +179,7 @@ Status Capture::Engine::adopt_references(References references, RigTime now) {
        {"right_saturated", kept.eyes[1].saturated_share},
        {"left_lit", kept.eyes[0].lit_share},
        {"right_lit", kept.eyes[1].lit_share}});
-  if (display() && !findings_.latency) {
+  if (display() && !dark_ && !findings_.latency) {  // black stays black, however late
     search_.emplace(frame(), findings_.exposure, hold());
     return begin_latency(now);
   }

@@ -289,6 +289,9 @@ Status Capture::Engine::end_closing(RigTime now) {
                                         std::to_string(kLeastContrast));
   }
   for (const auto& check : record_.checks) {
+    if (dark_) {
+      break;  // no sequence to be recognised
+    }
     if (Status verdict = check->verdict(); !verdict) {
       return retake_look(verdict.error(), now);
     }

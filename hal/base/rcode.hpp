@@ -30,7 +30,8 @@ enum class ErrorCode {
 };
 
 /// Hundreds group by the way of the light: 1 files and sessions, 2 decoding, 3 calibration, 4 scanning, 5 the tool
-/// itself, 6 devices, 7 capture, 8 the pretend world. A number is never used for another fault later.
+/// itself, 6 devices, 7 capture, 8 the pretend world, 9 the steered rig and its room, 10 tables and stations. A number
+/// is never used for another fault later.
 enum class RCode : int {
   kNone = 0,
 
@@ -144,6 +145,31 @@ enum class RCode : int {
   kTextureMissing = 806,
   kTextureFormat = 807,
   kBadPrepare = 808,
+  kPretendRigMissing = 809,
+  kPretendRigDied = 810,
+
+  // 09xx the steered rig and its room
+  kTooFewLooks = 901,
+  kLookForeign = 902,
+  kAxisReversed = 903,
+  kPictureMirrored = 904,
+  kRigMoved = 905,
+  kRigNotSolved = 906,
+  kDrawingsDisagree = 907,
+  kScaleWrong = 910,
+  kCommandMissing = 911,
+  kFeedbackDisagrees = 912,
+  kDatumsMissing = 913,
+  kDatumMoved = 914,
+  kDatumsExchanged = 915,
+  kSurveyUnusable = 916,
+
+  // 10xx tables and stations
+  kTableDamaged = 1001,
+  kTableVersion = 1002,
+  kTableBound = 1003,
+  kStationOutOfReach = 1004,
+  kStationUnknown = 1005,
 };
 
 struct Explanation {

@@ -13,7 +13,11 @@ const CommandTable& all_commands() {
       CommandRow{"session render", session_render},
       CommandRow{"calibrate cameras", calibrate_cameras},
       CommandRow{"calibrate projector", calibrate_projector},
+      CommandRow{"calibrate rig", calibrate_rig},
+      CommandRow{"plan looks", plan_looks},
       CommandRow{"scan", scan},
+      CommandRow{"bake", bake},
+      CommandRow{"verify", verify},
       CommandRow{"report", report},
       CommandRow{"target print", target_print},
       CommandRow{"sim", sim},
@@ -24,7 +28,8 @@ const CommandTable& all_commands() {
   // clang-format on
   static constexpr std::array kGroups{
       GroupRow{"session", "Look at recorded sessions"},
-      GroupRow{"calibrate", "Solve cameras and projector from a session"},
+      GroupRow{"calibrate", "Solve cameras, projector and mirror from a session"},
+      GroupRow{"plan", "Plan captures"},
       GroupRow{"target", "Calibration boards"},
   };
   static constexpr CommandTable kTable{kCommands, kGroups};

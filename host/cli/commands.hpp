@@ -30,12 +30,16 @@ struct CommandTable {
 const CommandTable& all_commands();
 
 // One function a command, each defined in the file of its name.
+std::unique_ptr<Command> bake();
+std::unique_ptr<Command> verify();
 std::unique_ptr<Command> completion();
 std::unique_ptr<Command> calibrate_cameras();
 std::unique_ptr<Command> calibrate_projector();
+std::unique_ptr<Command> calibrate_rig();
 std::unique_ptr<Command> capture();
 std::unique_ptr<Command> explain();
 std::unique_ptr<Command> help();
+std::unique_ptr<Command> plan_looks();
 std::unique_ptr<Command> report();
 std::unique_ptr<Command> scan();
 std::unique_ptr<Command> sim();

@@ -112,7 +112,9 @@ std::string errors_markdown() {
   std::string text =
       "# Errors\n\nWritten by `raysteer explain --markdown`; a test compares the two. The first digit after R0 groups "
       "by\n"
-      "the way of the light: 1 files and sessions, 2 decoding, 3 calibration, 4 scanning, 5 the tool itself.\n\n"
+      "the way of the light: 1 files and sessions, 2 decoding, 3 calibration, 4 scanning, 5 the tool itself, 6 "
+      "devices, 7 "
+      "capture, 8 the pretend world, 9 the steered rig and its room, 10 tables and stations.\n\n"
       "| code | name | what | usual cause | remedy | exit |\n|---|---|---|---|---|---|\n";
   for (const RCode rcode : all_rcodes()) {
     const Explanation& row = raysteer::explain(rcode);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "host/exchange/calibration_file.hpp"
+#include "host/exchange/device_text.hpp"
 #include "host/exchange/exports.hpp"
 #include "host/exchange/number_text.hpp"
 #include "host/exchange/write_file.hpp"
@@ -14,55 +15,6 @@ namespace {
 using calib::model::Device;
 using calib::model::Rig;
 
-template <class Values>
-std::string array(const Values& values) {
-  std::string text;
-  for (const double value : values) {
-    text += (text.empty() ? "" : ", ") + exact(value);
-  }
-  return "[" + text + "]";
-}
-
-// A basic TOML string.
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') {
-      out += '\\';
-      out += letter;
-    } else if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(letter));
-    } else {
-      out += letter;
-    }
-  }
-  return out + "\"";
-}
-
-std::string device_text(const Device& device) {
-  const calib::model::Camera& camera = device.camera;
-  const Eigen::Quaterniond& q = device.T_device_rig.q;
-  const Eigen::Vector3d& t = device.T_device_rig.t;
-  const auto used = static_cast<std::ptrdiff_t>(coefficients(camera.lens));
-  const std::vector<double> distortion(camera.k.begin(), camera.k.begin() + used);
-  return fmt::format(
-      "\n[[device]]\n"
-      "name = {}\n"
-      "kind = \"{}\"\n"
-      "width = {}\n"
-      "height = {}\n"
-      "focal_px = {}\n"
-      "center_px = {}\n"
-      "lens = \"{}\"\n"
-      "distortion = {}\n"
-      "rotation_wxyz = {}\n"
-      "translation_m = {}\n",
-      toml_text(device.name), device.kind == calib::model::DeviceKind::kProjector ? "projector" : "camera",
-      camera.width, camera.height, array(std::array{camera.fx, camera.fy}), array(std::array{camera.cx, camera.cy}),
-      calib::model::to_string(camera.lens), array(distortion), array(std::array{q.w(), q.x(), q.y(), q.z()}),
-      array(std::array{t.x(), t.y(), t.z()}));
-}
-
 // Devices and covariance: what the id stands for.
 std::string rig_text(const Rig& rig) {
   std::string text;
@@ -70,16 +22,7 @@ std::string rig_text(const Rig& rig) {
     text += device_text(device);
   }
   if (rig.covariance.size() > 0) {
-    text += "\n[covariance]\nparameters = [";
-    for (std::size_t i = 0; i < rig.parameters.size(); ++i) {
-      text += (i == 0 ? "" : ", ") + toml_text(rig.parameters[i]);
-    }
-    text += "]\nmatrix = [\n";
-    for (Eigen::Index i = 0; i < rig.covariance.rows(); ++i) {
-      const Eigen::VectorXd row = rig.covariance.row(i);
-      text += "  " + array(row) + ",\n";
-    }
-    text += "]\n";
+    text += covariance_text(rig.parameters, rig.covariance);
   }
   return text;
 }
@@ -119,14 +62,7 @@ Status check_finite(const Rig& rig, const CalibrationMeta& meta) {
 
 }  // namespace
 
-std::string calibration_id(const Rig& rig) {
-  // FNV-1a, 64 bits (Fowler, Noll, Vo): finds mistakes and mix-ups; it is no protection against forgery.
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char letter : rig_text(rig)) {
-    hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211ULL;
-  }
-  return fmt::format("{:016x}", hash);
-}
+std::string calibration_id(const Rig& rig) { return text_id(rig_text(rig)); }
 
 std::string to_toml(const Rig& rig, const CalibrationMeta& meta) {
   std::string text = fmt::format(
@@ -144,7 +80,7 @@ std::string to_toml(const Rig& rig, const CalibrationMeta& meta) {
     text += fmt::format("held_out_p95_px = {}\n", exact(meta.held_out_p95_px));
   }
   text += fmt::format("views_used = {}\ncorners_used = {}\ntarget_sag_m = {}\n", meta.views_used, meta.corners_used,
-                      array(std::array{meta.sag_x_m, meta.sag_y_m}));
+                      number_array(std::array{meta.sag_x_m, meta.sag_y_m}));
   return text + target_text(meta.target) + rig_text(rig);
 }
 

@@ -60,6 +60,37 @@ Device device_of(const Json& json) {
   return device;
 }
 
+calib::model::SteeredProjector projector_of(const Json& projector, const Json& mirror) {
+  calib::model::SteeredProjector steered;
+  const Device device = device_of(projector);
+  steered.lens = device.camera;
+  steered.T_projector_rig = device.T_device_rig;
+  const bool head = mirror.at("kind") == "head";
+  steered.kind = head ? calib::model::MirrorKind::kHead : calib::model::MirrorKind::kGalvoPair;
+  for (std::size_t k = 0; k < (head ? 1U : 2U); ++k) {
+    const Json& plane = mirror.at("planes").at(k);
+    steered.parts[k] = {.axis = vector_of(plane.at("axis")),
+                        .point = vector_of(plane.at("point_m")),
+                        .normal = vector_of(plane.at("normal")),
+                        .offset_m = plane.at("offset_m").get<double>(),
+                        .size_m = {plane.at("size_m").at(0).get<double>(), plane.at("size_m").at(1).get<double>()},
+                        .ellipse = plane.at("outline") == "ellipse"};
+  }
+  if (head) {
+    steered.outer_axis = vector_of(mirror.at("outer_axis"));
+    steered.outer_point = vector_of(mirror.at("outer_point_m"));
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Json& curve = mirror.at("curves").at(k);
+    steered.curves[k] = {.half_range = curve.at("half_range_rad").get<double>(),
+                         .gain = curve.at("gain").get<double>(),
+                         .quadratic = curve.at("quadratic").get<double>(),
+                         .cubic = curve.at("cubic").get<double>(),
+                         .cross_talk = curve.at("cross_talk").get<double>()};
+  }
+  return steered;
+}
+
 void add_mesh(const Json& json, std::vector<Triangle>& triangles) {
   const Json& points = json.at("points_m");
   for (const Json& corners : json.at("triangles")) {
@@ -133,6 +164,12 @@ Result<TruthFile> truth_from_json(std::string_view text) {
       add_mesh(mesh, truth.triangles);
     }
     truth.has_surfaces = json.value("meshes_complete", true);
+    if (json.contains("projector") && json.contains("mirror")) {
+      truth.projector = projector_of(json.at("projector"), json.at("mirror"));
+    }
+    if (json.contains("T_room_rig")) {
+      truth.T_room_rig = pose_of(json.at("T_room_rig"));
+    }
     return truth;
   } catch (const std::exception& exception) {
     return fail(RCode::kBadValue, std::string("truth.json: ") + exception.what());

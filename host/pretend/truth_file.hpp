@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "calib/model/rig.hpp"
+#include "calib/model/steered_projector.hpp"
 #include "calib/synth/scene.hpp"
 #include "hal/base/result.hpp"
 
@@ -29,6 +30,9 @@ struct TruthFile {
   calib::synth::Scene scene;             ///< of the first look; prints are not written
   std::vector<Triangle> triangles = {};  ///< surfaces of the pretend rig's room; read only
   bool has_surfaces = true;              ///< all of them; false: some are too fine to be written
+  /// Of the pretend rig; read only. What the mirror does besides (lag, repeatability, drift) is not in it.
+  std::optional<calib::model::SteeredProjector> projector = {};
+  std::optional<calib::model::Pose> T_room_rig = {};  ///< of the pretend rig; read only
 };
 
 std::string to_json(const TruthFile& truth);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "calib/scene/two_views.hpp"
+#include "host/scan/match_look.hpp"
 
 namespace raysteer::host::scan {
 namespace {
@@ -17,7 +18,6 @@ using calib::model::DeviceKind;
 using calib::scene::CloudPoint;
 using calib::scene::Match;
 using calib::scene::RayPair;
-using calib::scene::Sighting;
 using session::Session;
 
 /// Points this close to the wall's plane count as the wall: walls bend by several millimetres (flatness is judged in
@@ -49,33 +49,6 @@ Result<std::size_t> find_camera(const Session& session, int camera, const calib:
   }
   return fail(RCode::kCalibrationMismatch,
               "the session has a camera '" + name + "', the calibration " + (known.empty() ? "none" : known));
-}
-
-Result<Image<Sighting>> locate_and_drop(DecodedLook& look, int panel_width, int panel_height, int spacing) {
-  Result<Image<Sighting>> sightings = calib::scene::locate(look.codes, panel_width, panel_height, spacing);
-  look.codes = {};
-  return sightings;
-}
-
-Result<calib::scene::Matches> match_views(std::vector<DecodedLook>& looks, int panel_width, int panel_height) {
-  const int spacing = calib::scene::node_spacing(looks.front().codes, looks.back().codes);
-  if (looks.size() == 1) {
-    Result<Image<Sighting>> only = locate_and_drop(looks[0], panel_width, panel_height, spacing);
-    if (!only) {
-      return std::move(only).error();
-    }
-    return calib::scene::match_projector(*only, spacing);
-  }
-  Result<Image<Sighting>> left = Image<Sighting>();
-  Result<Image<Sighting>> right = Image<Sighting>();
-  {
-    const std::jthread other([&] { right = locate_and_drop(looks[1], panel_width, panel_height, spacing); });
-    left = locate_and_drop(looks[0], panel_width, panel_height, spacing);
-  }
-  if (!left || !right) {
-    return std::move(left ? right : left).error();
-  }
-  return calib::scene::match(*left, *right);
 }
 
 DepthRange depth_range(const std::vector<CloudPoint>& points) {
@@ -243,12 +216,12 @@ Result<Scan> scan(const Session& session, int look, const calib::model::Rig& rig
 
   const PatternSequence& sequence = session.manifest().sequence;
   Tick tick = stage("matching");
-  Result<calib::scene::Matches> matches = match_views(*looks, sequence.panel_width, sequence.panel_height);
+  Result<MatchedLook> matches = match_look(*looks, sequence.panel_width, sequence.panel_height);
   if (!matches) {
     return std::move(matches).error();
   }
   looks->clear();
-  scan.matches = *std::move(matches);
+  scan.matches = std::move(matches->matches);
   if (tick && !tick(1)) {
     return fail(RCode::kCancelled);
   }

@@ -140,7 +140,7 @@ std::string tail(const std::string& text) {
 Result<Json> run(std::vector<std::string> arguments, const Listener& listener) {
   const std::string path = program().string();
   if (::access(path.c_str(), X_OK) != 0) {
-    return fail(RCode::kFileMissing,
+    return fail(RCode::kPretendRigMissing,
                 path + ": " + std::strerror(errno) +
                     "; the pretend rig's program stands beside raysteer when both are "
                     "installed or built",
@@ -152,7 +152,7 @@ Result<Json> run(std::vector<std::string> arguments, const Listener& listener) {
   Pipe err;
   const pid_t child = start(path, arguments, out, err);
   if (child < 0 || out.reads() < 0 || err.reads() < 0) {
-    return fail(RCode::kInternal, path + " cannot be started: " + std::strerror(errno), errno);
+    return fail(RCode::kPretendRigMissing, path + " cannot be started: " + std::strerror(errno), errno);
   }
   out.close_end(1);
   err.close_end(1);
@@ -192,8 +192,8 @@ Result<Json> run(std::vector<std::string> arguments, const Listener& listener) {
     return *std::move(story.error);
   }
   if (!story.result || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    return fail(RCode::kInternal, "raysteer-sim ended without a result: " + ending(status) +
-                                      (complaint.empty() ? "" : ": " + tail(complaint)));
+    return fail(RCode::kPretendRigDied, "raysteer-sim ended without a result: " + ending(status) +
+                                            (complaint.empty() ? "" : ": " + tail(complaint)));
   }
   return *std::move(story.result);
 }

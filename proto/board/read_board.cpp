@@ -5,12 +5,14 @@
 #include <utility>
 
 #include "proto/board/board.hpp"
+#include "proto/document/fixed_numbers.hpp"
 #include "proto/document/parse.hpp"
 
 namespace raysteer::proto::board {
 
 using document::Faults;
 using document::Range;
+using document::read_numbers;
 using document::TomlTable;
 namespace {
 
@@ -20,41 +22,6 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr Range<std::int64_t> kSide{1, 65535};
 constexpr Range<double> kPlace{-100, 100};
 constexpr std::string_view kMetres = "lengths are in metres (25 mm is 0.025)";
-
-// `count` numbers, each within `range`; zeros after a fault.
-template <std::size_t count>
-std::array<double, count> read_numbers(TomlTable& table, std::string_view key, Range<double> range,
-                                       const std::array<double, count>* fallback = nullptr,
-                                       std::string_view hint = {}) {
-  std::array<double, count> values{};
-  if (!table.has(key)) {
-    table.numbers(key);  // known
-    if (fallback == nullptr) {
-      table.fault(RCode::kMissingKey, key, "is needed: " + std::to_string(count) + " numbers");
-      return values;
-    }
-    return *fallback;
-  }
-  const std::vector<double> given = table.numbers(key);
-  if (given.empty()) {
-    return values;  // said already
-  }
-  if (given.size() != count) {
-    table.fault(RCode::kBadValue, key,
-                "must be " + std::to_string(count) + " numbers, got " + std::to_string(given.size()));
-    return values;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (given[i] < range.least || given[i] > range.most) {
-      table.fault(RCode::kBadValue, key,
-                  "has " + std::to_string(given[i]) + ", which must be " + std::to_string(range.least) + " to " +
-                      std::to_string(range.most) + (hint.empty() ? "" : "; " + std::string(hint)));
-      return values;
-    }
-    values[i] = given[i];
-  }
-  return values;
-}
 
 template <std::size_t count>
 std::array<double, count> scaled(std::array<double, count> values, double factor) {

@@ -1,36 +1,11 @@
-#include <array>
-#include <charconv>
-#include <cstdio>
-
+#include "proto/document/toml_text.hpp"
 #include "proto/session/manifest.hpp"
 
 namespace raysteer::proto::session {
+
+using document::number;
+using document::quoted;
 namespace {
-
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      std::array<char, 8> escaped{};
-      std::snprintf(escaped.data(), escaped.size(), "\\u%04x", static_cast<unsigned>(c));
-      out += escaped.data();
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
-// The shortest text that reads back as the same number.
-std::string number(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-std::string number(std::int64_t value) { return std::to_string(value); }
 
 template <class Value>
 std::string array(const std::vector<Value>& values) {

@@ -34,7 +34,7 @@ Json device(const std::string& name, const char* kind, int width, int height, co
           {"fy", numbers.focal_px.y()},
           {"cx", numbers.centre_px.x()},
           {"cy", numbers.centre_px.y()},
-          {"lens", "bc5"},
+          {"lens", numbers.distortion[4] == 0 ? "bc4" : "bc5"},
           {"distortion", distortion},
           {"T_device_rig", json_of(T_device_rig)}};
 }
@@ -108,6 +108,7 @@ std::string truth_json(const Truth& truth, const scene::Scene& scene) {
   json["projector"]["focus_m"] = projector.focus_m;
   json["projector"]["pupil_m"] = projector.pupil_m;
   json["mirror"] = mirror(truth);
+  json["T_room_rig"] = json_of(scene.T_room_rig);
   add_surfaces(json, scene);
   return json.dump(1) + "\n";
 }

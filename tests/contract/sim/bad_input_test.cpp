@@ -89,7 +89,7 @@ TEST_F(SimProgram, says_when_raysteer_sim_is_not_there) {
   fs::copy_file(support::program_folder() / "raysteer", work() / "raysteer");
   const support::Finished finished =
       support::run_program({(work() / "raysteer").string(), "capture", "--sim", "--json", "--out", out().string()});
-  EXPECT_EQ(code_of(finished), "R0101") << finished.out;
+  EXPECT_EQ(code_of(finished), "R0809") << finished.out;
   EXPECT_EQ(finished.exit_code, 3);
   EXPECT_NE(finished.out.find("raysteer-sim"), std::string::npos);
   EXPECT_FALSE(fs::exists(out()));

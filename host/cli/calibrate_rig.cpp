@@ -1,0 +1,227 @@
+// raysteer calibrate rig: looks of a steered projector become one model that predicts every other look.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/steer/evaluate.hpp"
+#include "calib/steer/solve.hpp"
+#include "host/cli/commands.hpp"
+#include "host/exchange/calibration_file.hpp"
+#include "host/exchange/rig_file.hpp"
+#include "host/exchange/write_file.hpp"
+#include "host/pretend/truth_file.hpp"
+#include "host/rig/drawing.hpp"
+#include "host/rig/gather.hpp"
+#include "host/rig/read_files.hpp"
+#include "host/rig/room.hpp"
+#include "host/rig/truth_error.hpp"
+#include "host/session/session.hpp"
+
+namespace raysteer::host::cli {
+namespace {
+
+using calib::steer::Evaluation;
+using calib::steer::Look;
+using calib::steer::Solution;
+
+/// Looks of this name are never solved with, but predicted.
+constexpr std::string_view kCheck = "check";
+/// Without any such look, every so manieth is taken.
+constexpr std::size_t kEvery = 4;
+
+// docs/decisions/0005: what a look that was not calibrated may miss by, 95 %, on the surface.
+constexpr double kGoodMm = 1;
+constexpr double kUsableMm = 2.5;
+
+/// The rig stands still: so many looks at its datums are enough.
+constexpr int kDatumLooks = 8;
+
+struct Parts {
+  std::vector<Look> solved;
+  std::vector<Look> held_out;
+};
+
+Parts split(std::vector<Look> looks) {
+  const auto is_check = [](const Look& look) { return look.name.starts_with(kCheck); };
+  const bool named = std::ranges::any_of(looks, is_check);
+  Parts parts;
+  for (std::size_t k = 0; k < looks.size(); ++k) {
+    const bool held_out = named ? is_check(looks[k]) : k % kEvery == kEvery - 1;
+    (held_out ? parts.held_out : parts.solved).push_back(std::move(looks[k]));
+  }
+  return parts;
+}
+
+Json accuracy(double median_px, double p95_px, double median_mm, double p95_mm) {
+  return {{"median_px", median_px}, {"p95_px", p95_px}, {"median_mm", median_mm}, {"p95_mm", p95_mm}};
+}
+
+class CalibrateRig : public Command {
+ public:
+  Manual manual() const override {
+    return {.summary = "Calibrate projector and steered mirror from some looks",
+            .description =
+                "Decodes every look of the session, and solves cameras, projector and mirror as one model that "
+                "predicts every other look. The start and how far a part may be off come from the board file. Looks "
+                "whose names begin with 'check' are never solved with but predicted, and what they are missed by is "
+                "the accuracy stated; without such looks every fourth is taken.\n\n"
+                "With --out DIR: rig.toml (docs/rig-format.md) and result.json.",
+            .example =
+                "raysteer calibrate rig looks --cameras cameras --board mock-galvo --out rig\n"
+                "raysteer calibrate rig looks --cameras cameras --board mock-head --survey hall --json",
+            .out = TakesOut::kOptional,
+            .takes_frames = true};
+  }
+
+  void declare(Options& options) override {
+    options.argument("SESSION", &session_, "session file or its folder").required();
+    options.option("--cameras", "FILE", &cameras_, "calibration of the cameras, or its folder").required();
+    options.option("--board", "FILE", &board_, "board file, or an installed one's name: how the rig is drawn")
+        .required();
+    options.option("--survey", "FILE", &survey_, "where the room's datums are, or an installed survey's name");
+  }
+
+  Result<ExitCode> run(Context& context) override {
+    const auto session = session::Session::open(session_, context.frames_root());
+    RAYSTEER_TRY(session);
+    const auto cameras = exchange::read_calibration(cameras_);
+    RAYSTEER_TRY(cameras);
+    const auto drawing = rig::read_drawing(board_);
+    RAYSTEER_TRY(drawing);
+    auto gathered = rig::gather(*session, cameras->rig, {}, context.stage("decoding looks"));
+    RAYSTEER_TRY(gathered);
+    for (const rig::MissedLook& missed : gathered->missed) {
+      context.note(fmt::format("look '{}' left out [{}]: {}", missed.name, to_string(missed.error.rcode),
+                               missed.error.message()));
+    }
+    Parts parts = split(std::move(gathered->observations.looks));
+    gathered->observations.looks = std::move(parts.solved);
+    const auto solving = context.stage("solving");
+    const auto solution = calib::steer::solve(gathered->observations, *drawing);
+    RAYSTEER_TRY(solution);
+    RAYSTEER_TRY(Context::poll());
+    const auto evaluation = calib::steer::evaluate(*solution, parts.held_out);
+    RAYSTEER_TRY(evaluation);
+    std::optional<rig::InRoom> room;
+    if (!survey_.empty()) {
+      auto tied = tie(context, *session, *solution);
+      RAYSTEER_TRY(tied);
+      room = *std::move(tied);
+    }
+    const auto truth = pretend::truth_beside(session->file());
+    RAYSTEER_TRY(truth);
+    std::optional<rig::TruthError> error;
+    if (*truth && (*truth)->projector) {
+      auto found = rig::truth_error(*solution, **truth, parts.held_out);
+      RAYSTEER_TRY(found);
+      error = *found;
+    }
+    const std::string verdict = evaluation->p95_mm <= kGoodMm     ? "good"
+                                : evaluation->p95_mm <= kUsableMm ? "usable"
+                                                                  : "redo";
+    if (context.has_out()) {
+      const exchange::RigMeta meta{.session = session_,
+                                   .board = board_,
+                                   .verdict = verdict,
+                                   .whitened_rms = solution->whitened_rms,
+                                   .held_out_median_px = evaluation->median_px,
+                                   .held_out_p95_px = evaluation->p95_px,
+                                   .held_out_median_mm = evaluation->median_mm,
+                                   .held_out_p95_mm = evaluation->p95_mm,
+                                   .looks = static_cast<int>(solution->looks.size())};
+      RAYSTEER_TRY(exchange::write_file(
+          context.out() / "rig.toml",
+          room ? exchange::to_toml(room->rig.solution, tie_of(*room), meta) : exchange::to_toml(*solution, {}, meta)));
+    }
+    report(context, *solution, *evaluation, error, verdict);
+    report_room(context, room);
+    return verdict == "redo" ? ExitCode::kVerdictRedo : ExitCode::kDone;
+  }
+
+ private:
+  Result<rig::InRoom> tie(Context& context, const session::Session& session, const Solution& solution) const {
+    const auto survey = rig::read_survey(survey_);
+    RAYSTEER_TRY(survey);
+    const auto views = rig::see_datums(session, kDatumLooks, context.stage("finding datums"));
+    RAYSTEER_TRY(views);
+    return rig::tie_to_room(solution, *survey, *views);
+  }
+
+  static exchange::RoomTie tie_of(const rig::InRoom& room) {
+    return exchange::room_tie(room.rig, static_cast<int>(room.tie.misses.size()),
+                              room.tie.scale ? room.tie.scale->value : 1);
+  }
+
+  static void report_room(Context& context, const std::optional<rig::InRoom>& room) {
+    context.json()["tied_to_room"] = room.has_value();
+    if (!room) {
+      context.print("room             consistent with itself, not tied to the room: give --survey\n");
+      return;
+    }
+    Json& json = context.json()["room"];
+    double worst = 0;
+    for (const calib::datum::Miss& miss : room->tie.misses) {
+      json["datums"].push_back({{"name", miss.name}, {"miss_mm", 1e3 * miss.miss_m.norm()}});
+      worst = std::max(worst, 1e3 * miss.miss_m.norm());
+    }
+    context.print(fmt::format("room             tied by {} datums, none off by more than {:.2f} mm\n",
+                              room->tie.misses.size(), worst));
+    if (room->tie.scale) {
+      json["scale"] = room->tie.scale->value;
+      json["scale_sigma"] = room->tie.scale->sigma;
+      context.print(fmt::format(
+          "scale            {:.1f} of 1000.0 mm by {} (+- {:.1f})\n", 1000 * room->tie.scale->value,
+          room->tie.scale->by_lengths ? "known lengths" : "surveyed places", 1000 * room->tie.scale->sigma));
+    }
+  }
+
+  static void report(Context& context, const Solution& solution, const Evaluation& evaluation,
+                     const std::optional<rig::TruthError>& truth, const std::string& verdict) {
+    Json& json = context.json();
+    json["verdict"] = verdict;
+    json["looks"] = solution.looks.size();
+    json["held_out_looks"] = evaluation.looks.size();
+    json["held_out"] = accuracy(evaluation.median_px, evaluation.p95_px, evaluation.median_mm, evaluation.p95_mm);
+    json["held_out"]["raw_median_px"] = evaluation.raw_median_px;
+    json["held_out"]["raw_p95_px"] = evaluation.raw_p95_px;
+    json["held_out"]["predicted_rms_px"] = evaluation.predicted_rms_px;
+    json["whitened_rms"] = solution.whitened_rms;
+    json["repeatability_urad"] = 1e6 * solution.repeatability_rad;
+    json["points"] = {{"used", solution.used}, {"dropped", solution.dropped}};
+    if (truth) {
+      json["truth"] = accuracy(truth->median_px, truth->p95_px, truth->median_mm, truth->p95_mm);
+    }
+    context.print(fmt::format("{}: looks that were not calibrated are hit within {:.2f} mm ({:.2f} px), 95 %\n",
+                              verdict, evaluation.p95_mm, evaluation.p95_px));
+    context.print("\n");
+    context.print(fmt::format("held out         {} looks: {:.3f} px median, {:.3f} px (95 %); {:.3f} / {:.3f} mm\n",
+                              evaluation.looks.size(), evaluation.median_px, evaluation.p95_px, evaluation.median_mm,
+                              evaluation.p95_mm));
+    context.print(fmt::format("solved           {} looks, {} points ({} left out), whitened RMS {:.3f}\n",
+                              solution.looks.size(), solution.used, solution.dropped, solution.whitened_rms));
+    context.print(fmt::format("mirror           repeats within {:.0f} urad ({})\n", 1e6 * solution.repeatability_rad,
+                              solution.repeatability_estimated ? "estimated" : "as drawn"));
+    for (const calib::steer::OffDrawing& off : solution.off_drawing) {
+      context.print(fmt::format("off its drawing  {} by {:.1f} sigma\n", off.parameter, off.sigmas));
+    }
+    if (truth) {
+      context.print(fmt::format("error against the truth: {:.3f} px median, {:.3f} px (95 %); {:.3f} / {:.3f} mm\n",
+                                truth->median_px, truth->p95_px, truth->median_mm, truth->p95_mm));
+    }
+  }
+
+  std::string session_;
+  std::string cameras_;
+  std::string board_;
+  std::string survey_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> calibrate_rig() { return std::make_unique<CalibrateRig>(); }
+
+}  // namespace raysteer::host::cli
