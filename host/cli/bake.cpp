@@ -8,10 +8,8 @@
 
 #include "calib/bake/lut_set.hpp"
 #include "host/cli/commands.hpp"
-#include "host/exchange/rig_file.hpp"
 #include "host/exchange/write_file.hpp"
-#include "host/rig/read_files.hpp"
-#include "host/rig/stations.hpp"
+#include "host/rig/aimed_rig.hpp"
 
 namespace raysteer::host::cli {
 namespace {
@@ -35,57 +33,45 @@ class Bake : public Command {
   }
 
   Result<ExitCode> run(Context& context) override {
-    const auto rig = exchange::read_rig(rig_);
+    const auto rig = rig::read_aimed_rig(rig_, stations_);
     RAYSTEER_TRY(rig);
-    const auto room = rig->in_room();
-    if (!room) {
-      return fail(RCode::kDatumsMissing, rig_ +
-                                             " is not tied to a room, stations are places in one; calibrate it with "
-                                             "--survey");
-    }
-    const auto wanted = rig::read_stations(stations_);
-    RAYSTEER_TRY(wanted);
-    const auto aimed = rig::aim_stations(*room, *wanted);
-    RAYSTEER_TRY(aimed);
     const Tick baking = context.stage("baking");
-    const auto set = calib::bake::bake_lut_set(room->solution.projector, request(*rig, *room, *wanted, *aimed));
+    const auto set = calib::bake::bake_lut_set(rig->room.solution.projector, request(*rig));
     RAYSTEER_TRY(set);
     const auto bytes = proto::lut::write_lut_set(*set);
     RAYSTEER_TRY(bytes);
     if (context.has_out()) {
       RAYSTEER_TRY(exchange::write_file(context.out() / "tables.rlut", std::string(bytes->begin(), bytes->end())));
-      RAYSTEER_TRY(exchange::write_file(context.out() / "looks.toml", plan(*wanted, *aimed)));
+      RAYSTEER_TRY(exchange::write_file(context.out() / "looks.toml", plan(*rig)));
     }
-    return report(context, *aimed, *bytes);
+    return report(context, rig->aimed, *bytes);
   }
 
  private:
-  static calib::bake::LutSetRequest request(const exchange::RigCalibration& rig, const calib::steer::InRoom& room,
-                                            const proto::stations::Stations& wanted,
-                                            const std::vector<rig::AimedStation>& aimed) {
+  static calib::bake::LutSetRequest request(const rig::AimedRig& rig) {
     calib::bake::LutSetRequest request;
-    request.calibration_id = rig.id;
-    request.board_id = rig.meta.board;
+    request.calibration_id = rig.calibration.id;
+    request.board_id = rig.calibration.meta.board;
     request.steering.frame = proto::lut::Frame::kDatums;
-    request.steering.T_rig_plane = room.T_rig_room;
-    for (const proto::stations::KeepOut& zone : wanted.keep_out) {
+    request.steering.T_rig_plane = rig.room.T_rig_room;
+    for (const proto::stations::KeepOut& zone : rig.wanted.keep_out) {
       proto::lut::KeepOut& kept = request.keep_out.emplace_back();
       kept.name = zone.name;
       for (const proto::stations::Vec3& corner : zone.corners_m) {
         kept.corners.push_back({corner[0], corner[1]});
       }
     }
-    for (const rig::AimedStation& one : aimed) {
+    for (const rig::AimedStation& one : rig.aimed) {
       request.stations.push_back(one.station);
     }
     return request;
   }
 
-  static std::string plan(const proto::stations::Stations& wanted, const std::vector<rig::AimedStation>& aimed) {
+  static std::string plan(const rig::AimedRig& rig) {
     std::string text = fmt::format(
         "# A look at every station, planned by 'raysteer bake', for 'raysteer verify'.\nformat = 1\nname = \"{}\"\n",
-        wanted.name);
-    for (const rig::AimedStation& one : aimed) {
+        rig.wanted.name);
+    for (const rig::AimedStation& one : rig.aimed) {
       text += fmt::format("\n[[look]]\nname = \"{}\"\nmirror_mrad = [{:.6f}, {:.6f}]\n", one.station.name,
                           1e3 * one.station.command_rad->x(), 1e3 * one.station.command_rad->y());
     }

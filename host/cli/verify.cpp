@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "host/cli/commands.hpp"
-#include "host/exchange/rig_file.hpp"
 #include "host/pretend/truth_file.hpp"
+#include "host/rig/aimed_rig.hpp"
 #include "host/rig/gather.hpp"
-#include "host/rig/read_files.hpp"
-#include "host/rig/stations.hpp"
 #include "host/session/session.hpp"
 
 namespace raysteer::host::cli {
@@ -75,32 +73,22 @@ class Verify : public Command {
   }
 
   Result<ExitCode> run(Context& context) override {
-    const auto calibration = exchange::read_rig(rig_);
-    RAYSTEER_TRY(calibration);
-    const auto room = calibration->in_room();
-    if (!room) {
-      return fail(RCode::kDatumsMissing, rig_ +
-                                             " is not tied to a room, stations are places in one; calibrate it with "
-                                             "--survey");
-    }
-    const auto wanted = rig::read_stations(stations_);
-    RAYSTEER_TRY(wanted);
-    const auto aimed = rig::aim_stations(*room, *wanted);
-    RAYSTEER_TRY(aimed);
+    const auto rig = rig::read_aimed_rig(rig_, stations_);
+    RAYSTEER_TRY(rig);
     const auto session = session::Session::open(session_, context.frames_root());
     RAYSTEER_TRY(session);
-    const auto gathered = rig::gather(*session, room->solution.cameras, {.columns = 60, .rows = 40, .looks = {}},
+    const auto gathered = rig::gather(*session, rig->room.solution.cameras, {.columns = 60, .rows = 40, .looks = {}},
                                       context.stage("decoding looks"));
     RAYSTEER_TRY(gathered);
     std::vector<rig::VerifiedStation> verified;
     std::vector<std::string> missing;
-    for (const rig::AimedStation& one : *aimed) {
+    for (const rig::AimedStation& one : rig->aimed) {
       const auto* look = rig::look_at(gathered->observations.looks, one);
       if (look == nullptr) {
         missing.push_back(one.station.name);
         continue;
       }
-      const auto station = rig::verify_station(*room, one, *look);
+      const auto station = rig::verify_station(rig->room, one, *look);
       RAYSTEER_TRY(station);
       verified.push_back(*station);
     }
@@ -110,7 +98,7 @@ class Verify : public Command {
     }
     const auto truth = pretend::truth_beside(session->file());
     RAYSTEER_TRY(truth);
-    return report(context, *aimed, verified, missing, *truth);
+    return report(context, rig->aimed, verified, missing, *truth);
   }
 
  private:
