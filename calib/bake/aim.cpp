@@ -13,6 +13,15 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+/// What is to be lit: four places, and the plane that they lie in or about.
+struct Shown {
+  std::string name;
+  std::array<Vector3d, 4> corners;
+  Vector3d middle;
+  Vector3d normal;
+  std::optional<Vector2d> command_rad;
+};
+
 std::optional<Vector2d> miss_px(const model::SteeredProjector& projector, const Vector3d& p, const Vector2d& x,
                                 const Vector2d& command) {
   const auto at = projector.at(command).project(p);
@@ -42,12 +51,11 @@ double beyond_m(const model::VirtualProjector& view, const MirrorWindow& window,
   return inside * (inner - p).norm();
 }
 
-/// Where the panel's middle lands on the station's plane; the station's own middle when it does not.
-Vector3d middle_of_light(const model::VirtualProjector& view, const Station& station) {
-  const Vector3d normal = station.T_rig_plane.q * Vector3d::UnitZ();
+/// Where the panel's middle lands on the plane; the places' own middle when it does not.
+Vector3d middle_of_light(const model::VirtualProjector& view, const Shown& shown) {
   const auto ray = view.ray(0.5 * Vector2d(view.lens.width - 1, view.lens.height - 1));
-  const double length = ray ? normal.dot(station.T_rig_plane.t - view.centre()) / normal.dot(*ray) : -1;
-  return length > 0 && std::isfinite(length) ? Vector3d(view.centre() + length * *ray) : station.T_rig_plane.t;
+  const double length = ray ? shown.normal.dot(shown.middle - view.centre()) / shown.normal.dot(*ray) : -1;
+  return length > 0 && std::isfinite(length) ? Vector3d(view.centre() + length * *ray) : shown.middle;
 }
 
 Vector2d middle_of(const std::array<Vector2d, 4>& points) {
@@ -61,9 +69,9 @@ Vector2d middle_of(const std::array<Vector2d, 4>& points) {
 }
 
 /// Puts the middle of the corners' picture in the panel's middle.
-std::optional<Vector2d> central_command(const model::SteeredProjector& projector, const Station& station) {
-  const Vector3d middle = station.T_rig_plane.t;
-  const auto points = corners(station);
+std::optional<Vector2d> central_command(const model::SteeredProjector& projector, const Shown& shown) {
+  const Vector3d& middle = shown.middle;
+  const auto& points = shown.corners;
   Vector2d x = panel_middle(projector);
   auto command = command_for(projector, middle, x);
   for (int round = 0; round < 5 && command; ++round) {
@@ -90,8 +98,8 @@ std::optional<Vector2d> central_command(const model::SteeredProjector& projector
   return command;
 }
 
-/// A command within the range whose light comes as near to the station's middle as the range allows; roughly.
-std::optional<Vector2d> nearest_command(const model::SteeredProjector& projector, const Station& station) {
+/// A command within the range whose light comes as near to the middle as the range allows; roughly.
+std::optional<Vector2d> nearest_command(const model::SteeredProjector& projector, const Shown& shown) {
   constexpr int kParts = 24;
   const auto n = projector.lens.normalize(panel_middle(projector));
   double least = std::numeric_limits<double>::infinity();
@@ -100,8 +108,8 @@ std::optional<Vector2d> nearest_command(const model::SteeredProjector& projector
     for (int j = 0; j <= kParts; ++j) {
       const Vector2d share(i / double{kParts}, j / double{kParts});
       const Vector2d command = projector.least_rad + share.cwiseProduct(projector.most_rad - projector.least_rad);
-      const Vector3d lands = middle_of_light(projector.at(command), station);
-      const double off = (lands - station.T_rig_plane.t).norm();
+      const Vector3d lands = middle_of_light(projector.at(command), shown);
+      const double off = (lands - shown.middle).norm();
       if (off > 0 && off < least && MirrorWindow(projector, command).passes(n->homogeneous())) {
         least = off;
         best = command;
@@ -177,22 +185,24 @@ std::optional<Vector2d> command_for(const model::SteeredProjector& projector, co
   return std::isfinite(least) ? command_near(projector, p, x, best) : std::nullopt;
 }
 
-Result<Vector2d> station_command(const model::SteeredProjector& projector, const Station& station) {
-  const std::string where = "station '" + station.name + "': ";
-  const auto exact = station.command_rad ? station.command_rad : central_command(projector, station);
-  const auto wanted = exact ? exact : nearest_command(projector, station);
+namespace {
+
+Result<Vector2d> command_of(const model::SteeredProjector& projector, const Shown& shown) {
+  const std::string where = "station '" + shown.name + "': ";
+  const auto exact = shown.command_rad ? shown.command_rad : central_command(projector, shown);
+  const auto wanted = exact ? exact : nearest_command(projector, shown);
   if (!wanted) {
     return fail(RCode::kStationOutOfReach, where + "it lies behind the light at every command");
   }
-  if (station.command_rad && !projector.in_range(*wanted)) {
+  if (shown.command_rad && !projector.in_range(*wanted)) {
     return fail(RCode::kStationOutOfReach, where + "its command " + in_mrad(*wanted) + " is out of the range " +
                                                in_mrad(projector.least_rad) + " to " + in_mrad(projector.most_rad));
   }
   const Vector2d command = wanted->cwiseMax(projector.least_rad).cwiseMin(projector.most_rad);
   const model::VirtualProjector view = projector.at(command);
   const MirrorWindow window(projector, command);
-  const auto points = corners(station);
-  const Vector3d inner = middle_of_light(view, station);
+  const auto& points = shown.corners;
+  const Vector3d inner = middle_of_light(view, shown);
   std::size_t worst = 0;
   double farthest = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -213,6 +223,26 @@ Result<Vector2d> station_command(const model::SteeredProjector& projector, const
     return fail(RCode::kStationOutOfReach, std::move(note), static_cast<std::int64_t>(std::lround(1e3 * farthest)));
   }
   return command;
+}
+
+}  // namespace
+
+Result<Vector2d> station_command(const model::SteeredProjector& projector, const Station& station) {
+  return command_of(projector, {.name = station.name,
+                                .corners = corners(station),
+                                .middle = station.T_rig_plane.t,
+                                .normal = station.T_rig_plane.q * Vector3d::UnitZ(),
+                                .command_rad = station.command_rad});
+}
+
+Result<Vector2d> command_showing(const model::SteeredProjector& projector, const std::string& name,
+                                 const std::array<Vector3d, 4>& corners) {
+  const Vector3d normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalized();
+  return command_of(projector, {.name = name,
+                                .corners = corners,
+                                .middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]),
+                                .normal = normal,
+                                .command_rad = std::nullopt});
 }
 
 }  // namespace raysteer::calib::bake

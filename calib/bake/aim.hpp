@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <optional>
+#include <string>
 
 #include "calib/bake/station.hpp"
 #include "calib/model/steered_projector.hpp"
@@ -27,5 +29,9 @@ inline Eigen::Vector2d panel_middle(const model::SteeredProjector& projector) {
 /// The command that shows the station in the panel's middle, or as near to it as the range allows; its own, if it has
 /// one. Error kStationOutOfReach, when a corner gets no light: which, and how far beyond the light it lies.
 Result<Eigen::Vector2d> station_command(const model::SteeredProjector& projector, const Station& station);
+
+/// The same for four places in the order of kCornerNames, which need not lie in a plane. Error kStationOutOfReach.
+Result<Eigen::Vector2d> command_showing(const model::SteeredProjector& projector, const std::string& name,
+                                        const std::array<Eigen::Vector3d, 4>& corners);
 
 }  // namespace raysteer::calib::bake

@@ -38,6 +38,21 @@ Content seen_content(std::string name, const model::Pose& T_eye_rig, double foca
   return content;
 }
 
+Sight sight(const Content& content, const Eigen::Vector2d& uv) {
+  const Eigen::Matrix3d A = content.content_rig.leftCols<3>();
+  const Eigen::Vector3d b = content.content_rig.col(3);
+  if (A.row(2).norm() > 0) {
+    const Eigen::Matrix3d back = A.inverse();
+    return {.origin = -(back * b), .direction = (back * uv.homogeneous()).normalized()};
+  }
+  // Parallel ways: the third row is 0 0 0 1, and content lies on the far side of x times y.
+  constexpr double kBefore = 50;
+  const Eigen::Vector3d direction = A.row(0).cross(A.row(1)).normalized();
+  Eigen::Matrix3d rows = A;
+  rows.row(2) = direction.transpose();
+  return {.origin = rows.inverse() * Eigen::Vector3d(uv.x() - b.x(), uv.y() - b.y(), -kBefore), .direction = direction};
+}
+
 Status check(const Station& station) {
   if (!station.T_rig_plane.q.coeffs().allFinite() || !station.T_rig_plane.t.allFinite() ||
       !station.size_m.allFinite() || (station.command_rad && !station.command_rad->allFinite())) {

@@ -39,6 +39,13 @@ Content draped_content(const Station& station);
 Content seen_content(std::string name, const model::Pose& T_eye_rig, double focal_px, const Eigen::Vector2d& centre_px,
                      const Eigen::Vector2i& content_px, const std::optional<SurfacePlane>& plane);
 
+/// The way a content pixel is looked at: rig frame, `direction` unit.
+struct Sight {
+  Eigen::Vector3d origin;  ///< the eye; for content along parallel ways 50 m before the rig
+  Eigen::Vector3d direction;
+};
+Sight sight(const Content& content, const Eigen::Vector2d& uv);
+
 /// Errors: kBadValue (name, sizes), kNotFinite.
 Status check(const Station& station);
 Status check(const Content& content);

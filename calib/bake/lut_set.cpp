@@ -50,7 +50,8 @@ Result<LutSet> bake_lut_set(const model::SteeredProjector& projector, const LutS
   for (const Station& station : request.stations) {
     const auto command = station_command(projector, station);
     RAYSTEER_TRY(command);
-    placed.push_back({.content = metric_content(station), .command_rad = *command});
+    placed.push_back(
+        {.content = metric_content(station), .command_rad = *command, .stands_as_rad = station.stands_as_rad});
   }
   placed.insert(placed.end(), request.further.begin(), request.further.end());
 
@@ -58,9 +59,10 @@ Result<LutSet> bake_lut_set(const model::SteeredProjector& projector, const LutS
   const KeepOutFloor floor{.T_plane_rig = request.steering.T_rig_plane.inverse(), .zones = request.keep_out};
   std::vector<std::optional<Result<WarpMap>>> maps(placed.size());
   in_parallel(static_cast<int>(placed.size()), request.threads, [&](int i) {
-    const auto& [content, command] = placed[static_cast<std::size_t>(i)];
-    const StationView view(projector, command, content, request.scene, floor, request.warp.light);
-    maps[static_cast<std::size_t>(i)] = bake_warp(view, rays, command, request.warp);
+    const PlacedContent& one = placed[static_cast<std::size_t>(i)];
+    const StationView view(projector, one.stands_as_rad.value_or(one.command_rad), one.content, request.scene, floor,
+                           request.warp.light);
+    maps[static_cast<std::size_t>(i)] = bake_warp(view, rays, one.command_rad, request.warp);
   });
   LutSet set{.calibration_id = request.calibration_id,
              .board_id = request.board_id,

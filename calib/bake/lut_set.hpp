@@ -1,6 +1,7 @@
 // pure: all tables of a solved rig for its device.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace raysteer::calib::bake {
 struct PlacedContent {
   Content content;
   Eigen::Vector2d command_rad;
+  std::optional<Eigen::Vector2d> stands_as_rad = std::nullopt;  ///< as a Station's
 };
 
 struct LutSetRequest {

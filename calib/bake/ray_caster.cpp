@@ -136,4 +136,11 @@ void RayCaster::first(const Eigen::Vector3d& origin, std::span<const Eigen::Vect
   }
 }
 
+std::optional<std::uint32_t> RayCaster::first(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+  constexpr double kNearest = 0;
+  std::uint32_t triangle = kNothing;
+  first(origin, std::span(&direction, 1), std::span(&kNearest, 1), std::span(&triangle, 1));
+  return triangle == kNothing ? std::nullopt : std::optional(triangle);
+}
+
 }  // namespace raysteer::calib::bake

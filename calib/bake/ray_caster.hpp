@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,9 @@ class RayCaster {
   /// The first triangle that origin + s direction meets with s > nearest, or kNothing; for each direction.
   void first(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
              std::span<const double> nearest, std::span<std::uint32_t> triangles) const;
+  /// The same for one way, anywhere on it.
+  std::optional<std::uint32_t> first(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  const TriangleMesh& mesh() const { return mesh_; }
   /// Its plane.
   const SurfacePlane& plane(std::uint32_t triangle) const { return planes_[triangle]; }
 

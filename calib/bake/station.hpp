@@ -18,7 +18,10 @@ struct Station {
   Eigen::Vector2d size_m{0.5, 0.3125};
   Eigen::Vector2i content_px{800, 500};  ///< they fill the rectangle from edge to edge
   std::optional<Eigen::Vector2d> command_rad =
-      std::nullopt;         ///< nothing: the one that shows the rectangle in the panel's middle
+      std::nullopt;  ///< nothing: the one that shows the rectangle in the panel's middle
+  /// The command at whose angles the mirror truly stands when it is told command_rad, once dots have said so
+  /// (calib/steer/refine.hpp); nothing: it does as it is told.
+  std::optional<Eigen::Vector2d> stands_as_rad = std::nullopt;
   double tolerance_mm = 0;  ///< 0: none asked
 };
 

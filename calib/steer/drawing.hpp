@@ -5,7 +5,8 @@
 
 namespace raysteer::calib::steer {
 
-/// One standard deviation each of what a workshop delivers (algorithms 4.5, 4.8).
+/// One standard deviation each of what a workshop delivers (algorithms 4.5, 4.8). A board file's [tolerance] has fewer
+/// numbers and no defaults, since files are the device's business too; host/rig/drawing.cpp alone makes one of it.
 struct Tolerance {
   double axis_rad = 0.01745;
   double position_m = 0.0025;

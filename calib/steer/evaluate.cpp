@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "calib/model/steered_look.hpp"
 #include "calib/steer/check.hpp"
@@ -13,6 +14,7 @@ namespace raysteer::calib::steer {
 namespace {
 
 struct Missed {
+  Eigen::Vector3d p;                     ///< metres, rig frame
   Eigen::Vector2d at;                    ///< panel, -1 to 1
   Eigen::Vector2d error;                 ///< px
   Eigen::Matrix2d information;           ///< of the measurement: cameras' and panel's noise
@@ -23,10 +25,10 @@ struct Missed {
   bool used = true;
 };
 
-std::vector<Missed> missed(const Solution& solution, const Look& look) {
+std::vector<Missed> missed(const Solution& solution, const Look& look, const LookState& state) {
   const Eigen::MatrixXd held(solution.camera_parameters(), 0);
   const Eyes eyes(solution.cameras, held);
-  const model::SteeredLook steered(solution.projector, look.command_rad);
+  const model::SteeredLook steered(solution.projector, look.command_rad, state.latent_rad);
   const Eigen::Vector2d half(solution.projector.lens.width / 2.0, solution.projector.lens.height / 2.0);
   std::vector<Missed> all;
   for (const LitPoint& point : look.points) {
@@ -36,9 +38,10 @@ std::vector<Missed> missed(const Solution& solution, const Look& look) {
     if (!x) {
       continue;
     }
-    const auto prediction = predict(solution, look.command_rad, seen->p);
+    const auto prediction = predict(solution, look.command_rad, seen->p, PointFrom::kCameras, std::nullopt, state);
     const Eigen::Matrix2d noise = point.cov_x + by.by_point * seen->covariance * by.by_point.transpose();
-    all.push_back({.at = point.x.cwiseQuotient(half) - Eigen::Vector2d::Ones(),
+    all.push_back({.p = seen->p,
+                   .at = point.x.cwiseQuotient(half) - Eigen::Vector2d::Ones(),
                    .error = *x - point.x,
                    .information = noise.inverse(),
                    .m_per_px = by.by_point.transpose() * (by.by_point * by.by_point.transpose()).inverse(),
@@ -88,40 +91,50 @@ double quantile(std::vector<double>& values, double share) {
 
 }  // namespace
 
-Result<Evaluation> evaluate(const Solution& solution, std::span<const Look> looks) {
+Result<Evaluation> evaluate(const Solution& solution, std::span<const Look> looks, std::span<const LookState> states) {
   if (looks.empty()) {
     return fail(RCode::kTooFewLooks, "no held-out looks to judge by; expected at least one");
   }
   Evaluation evaluation;
-  std::vector<double> px, mm, raw_px, raw_mm;
+  std::vector<double> raw_px, raw_mm;
+  std::vector<double>& px = evaluation.px;
+  std::vector<double>& mm = evaluation.mm;
+  std::size_t inside = 0;
   double squared = 0;
   double variance = 0;
   double stated = 0;
-  for (const Look& look : looks) {
+  for (std::size_t k = 0; k < looks.size(); ++k) {
+    const Look& look = looks[k];
     RAYSTEER_TRY(check(look));
-    std::vector<Missed> points = missed(solution, look);
+    std::vector<Missed> points = missed(solution, look, k < states.size() ? states[k] : LookState{});
     smooth(points);
     std::vector<double> here;
+    std::vector<HeldOutPoint> kept;
     for (const Missed& point : points) {
       if (!point.used) {
         continue;
       }
       here.push_back(point.smooth.norm());
+      kept.push_back({point.p, point.m_per_px * point.smooth});
       px.push_back(point.smooth.norm());
       mm.push_back(1e3 * (point.m_per_px * point.smooth).norm());
       raw_px.push_back(point.error.norm());
       raw_mm.push_back(1e3 * (point.m_per_px * point.error).norm());
       squared += point.smooth.squaredNorm();
       stated += point.predicted.trace();
+      constexpr double kChiSquare95 = 5.991464547107979;
+      const Eigen::Matrix2d expected = point.predicted + point.smooth_covariance;
+      inside += point.smooth.dot(expected.ldlt().solve(point.smooth)) <= kChiSquare95 ? 1 : 0;
       variance += point.predicted.trace() + point.smooth_covariance.trace();
     }
     if (here.size() < 12) {
       return fail(RCode::kTooFewCorrespondences, "held-out look '" + look.name + "' has " +
                                                      std::to_string(here.size()) + " points that agree; expected 12");
     }
-    evaluation.looks.push_back({look.name, quantile(here, 0.5), quantile(here, 0.95)});
+    evaluation.looks.push_back({look.name, quantile(here, 0.5), quantile(here, 0.95), std::move(kept)});
   }
   evaluation.points = px.size();
+  evaluation.within_95 = static_cast<double>(inside) / static_cast<double>(px.size());
   evaluation.predicted_rms_px = std::sqrt(stated / static_cast<double>(px.size()));
   evaluation.normalised = squared / variance;
   evaluation.median_px = quantile(px, 0.5);

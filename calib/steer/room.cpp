@@ -3,19 +3,13 @@
 #include <string>
 
 #include "calib/steer/eye_points.hpp"
+#include "calib/steer/room_derivatives.hpp"
 
 namespace raysteer::calib::steer {
 namespace {
 
 constexpr std::size_t kFewest = 4;
 constexpr int kIterations = 8;
-
-/// d(p_to)/d(left increment) of T p, at T p without its translation.
-Eigen::Matrix<double, 3, 6> by_increment(const Eigen::Vector3d& turned) {
-  Eigen::Matrix<double, 3, 6> by;
-  by << -model::cross_matrix(turned), Eigen::Matrix3d::Identity();
-  return by;
-}
 
 /// One point's four residuals and what they depend on.
 struct Row {
@@ -150,30 +144,45 @@ Result<InRoom> tie_to_room(const Solution& solution, std::span<const RoomPoint> 
   return rig;
 }
 
-std::optional<PanelPrediction> predict_in_room(const InRoom& rig, const Eigen::Vector2d& command_rad,
-                                               const Eigen::Vector3d& p_room, const Eigen::Vector3d& normal_room,
-                                               const LookState& state) {
+Eigen::Matrix<double, 3, 6> by_increment(const Eigen::Vector3d& turned) {
+  Eigen::Matrix<double, 3, 6> by;
+  by << -model::cross_matrix(turned), Eigen::Matrix3d::Identity();
+  return by;
+}
+
+std::optional<LightOnPlace> light_on_place(const InRoom& rig, const Eigen::Vector2d& command_rad,
+                                           const Eigen::Vector3d& p_room, const LookState& state) {
   const model::SteeredLook look(rig.solution.projector, command_rad, state.latent_rad);
-  const Eigen::Vector3d p = rig.T_rig_room * p_room;
   model::PixelDerivatives by;
-  const auto x = look.project(p, by);
+  const auto x = look.project(rig.T_rig_room * p_room, by);
   if (!x) {
     return std::nullopt;
   }
   const int n_c = rig.solution.camera_parameters();
   const int n_p = rig.solution.projector_parameters();
-  Eigen::Matrix<double, 2, Eigen::Dynamic> all =
-      Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, rig.covariance.cols());
-  all.middleCols(n_c, n_p) = by.by_parameters;
+  LightOnPlace light{.x = *x, .by_point = by.by_point, .by_numbers = {}, .by_angles = by.by_angles};
+  light.by_numbers = Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, rig.covariance.cols());
+  light.by_numbers.middleCols(n_c, n_p) = by.by_parameters;
   if (state.by_parameters.cols() == n_c + n_p) {
-    all.leftCols(n_c + n_p) += by.by_angles * state.by_parameters;
+    light.by_numbers.leftCols(n_c + n_p) += by.by_angles * state.by_parameters;
   }
-  all.rightCols<6>() = by.by_point * by_increment(rig.T_rig_room.q * p_room);
+  light.by_numbers.rightCols<6>() = by.by_point * by_increment(rig.T_rig_room.q * p_room);
+  return light;
+}
+
+std::optional<PanelPrediction> predict_in_room(const InRoom& rig, const Eigen::Vector2d& command_rad,
+                                               const Eigen::Vector3d& p_room, const Eigen::Vector3d& normal_room,
+                                               const LookState& state) {
+  const auto light = light_on_place(rig, command_rad, p_room, state);
+  if (!light) {
+    return std::nullopt;
+  }
   const Eigen::Matrix2d angles = state.covariance_rad2.value_or(
       rig.solution.repeatability_rad * rig.solution.repeatability_rad * Eigen::Matrix2d::Identity());
-  PanelPrediction prediction{.x = *x, .covariance = {}, .mm_per_px = {}};
-  prediction.covariance = all * rig.covariance * all.transpose() + by.by_angles * angles * by.by_angles.transpose();
-  const Eigen::Matrix2d px_per_m = by.by_point * model::tangents(rig.T_rig_room.q * normal_room);
+  PanelPrediction prediction{.x = light->x, .covariance = {}, .mm_per_px = {}};
+  prediction.covariance = light->by_numbers * rig.covariance * light->by_numbers.transpose() +
+                          light->by_angles * angles * light->by_angles.transpose();
+  const Eigen::Matrix2d px_per_m = light->by_point * model::tangents(rig.T_rig_room.q * normal_room);
   prediction.mm_per_px = 1e3 * px_per_m.inverse();
   return prediction;
 }

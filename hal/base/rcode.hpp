@@ -30,8 +30,8 @@ enum class ErrorCode {
 };
 
 /// Hundreds group by the way of the light: 1 files and sessions, 2 decoding, 3 calibration, 4 scanning, 5 the tool
-/// itself, 6 devices, 7 capture, 8 the pretend world, 9 the steered rig and its room, 10 tables and stations. A number
-/// is never used for another fault later.
+/// itself, 6 devices, 7 capture, 8 the pretend world, 9 the steered rig and its room, 10 tables and stations, 11 the
+/// device's state, 12 its store, 13 the wire. A number is never used for another fault later.
 enum class RCode : int {
   kNone = 0,
 
@@ -85,6 +85,7 @@ enum class RCode : int {
   kTooFewMatches = 401,
   kPoseMoved = 402,
   kCalibrationMismatch = 403,
+  kSurfacesApart = 404,
 
   // 05xx the tool itself
   kUsage = 501,
@@ -115,6 +116,14 @@ enum class RCode : int {
   kBlobMissing = 617,
   kDataLoss = 618,
   kStoreReadOnly = 619,
+  kMirrorFollowing = 620,
+  kMirrorStuck = 621,
+  kOverTemperature = 622,
+  kTickLate = 623,
+  kKeepOut = 624,
+  kDwellBudget = 625,
+  kDisplayChanged = 626,
+  kInterlockFlaps = 627,
 
   // 07xx capture and plan
   kShotIncomplete = 701,
@@ -156,6 +165,8 @@ enum class RCode : int {
   kRigMoved = 905,
   kRigNotSolved = 906,
   kDrawingsDisagree = 907,
+  kSceneTooFlat = 908,
+  kTooLittleParallax = 909,
   kScaleWrong = 910,
   kCommandMissing = 911,
   kFeedbackDisagrees = 912,
@@ -170,6 +181,41 @@ enum class RCode : int {
   kTableBound = 1003,
   kStationOutOfReach = 1004,
   kStationUnknown = 1005,
+  kSurfaceMissing = 1006,
+
+  // 11xx the device's state
+  kFaultLatched = 1101,
+  kLeaseHeld = 1102,
+  kNotNow = 1103,
+  kPastDeadline = 1104,
+  kWatchdog = 1105,
+  kStartLoop = 1106,
+
+  // 12xx tables on the device
+  kSetForeign = 1201,
+  kTrialExpired = 1202,
+  kNoTrial = 1203,
+  kSlotDamaged = 1204,
+  kNoTables = 1205,
+  kStoreNewer = 1206,
+  kQuota = 1207,
+  kChunkDamaged = 1208,
+  kOffsetWrong = 1209,
+  kObjectMissing = 1210,
+  kBackupDamaged = 1211,
+
+  // 13xx the wire
+  kUnreachable = 1301,
+  kNotPaired = 1302,
+  kRoleTooLow = 1303,
+  kPairingRefused = 1304,
+  kTooManyTries = 1305,
+  kPeerChanged = 1306,
+  kMalformed = 1307,
+  kTooLarge = 1308,
+  kNoSuchMethod = 1309,
+  kTooBusy = 1310,
+  kDisconnected = 1311,
 };
 
 struct Explanation {

@@ -2,14 +2,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "calib/steer/evaluate.hpp"
 #include "calib/steer/solve.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/rig_result.hpp"
 #include "host/exchange/calibration_file.hpp"
 #include "host/exchange/rig_file.hpp"
 #include "host/exchange/write_file.hpp"
@@ -18,6 +21,7 @@
 #include "host/rig/gather.hpp"
 #include "host/rig/read_files.hpp"
 #include "host/rig/room.hpp"
+#include "host/rig/stations.hpp"
 #include "host/rig/truth_error.hpp"
 #include "host/session/session.hpp"
 
@@ -63,18 +67,21 @@ Json accuracy(double median_px, double p95_px, double median_mm, double p95_mm) 
 class CalibrateRig : public Command {
  public:
   Manual manual() const override {
-    return {.summary = "Calibrate projector and steered mirror from some looks",
-            .description =
-                "Decodes every look of the session, and solves cameras, projector and mirror as one model that "
-                "predicts every other look. The start and how far a part may be off come from the board file. Looks "
-                "whose names begin with 'check' are never solved with but predicted, and what they are missed by is "
-                "the accuracy stated; without such looks every fourth is taken.\n\n"
-                "With --out DIR: rig.toml (docs/rig-format.md) and result.json.",
-            .example =
-                "raysteer calibrate rig looks --cameras cameras --board mock-galvo --out rig\n"
-                "raysteer calibrate rig looks --cameras cameras --board mock-head --survey hall --json",
-            .out = TakesOut::kOptional,
-            .takes_frames = true};
+    return {
+        .summary = "Calibrate projector and steered mirror from some looks",
+        .description =
+            "Decodes every look of the session, and solves cameras, projector and mirror as one model that "
+            "predicts every other look. The start and how far a part may be off come from the board file. Looks "
+            "whose names begin with 'check' are never solved with but predicted, and what they are missed by is "
+            "the accuracy stated; without such looks every fourth is taken.\n\n"
+            "With --previous, and when --out replaces an earlier calibration, says by how many millimetres the light "
+            "moved since, and whether the rig as a whole did or something inside it.\n\n"
+            "With --out DIR: rig.toml (docs/rig-format.md), result.json and report.html.",
+        .example =
+            "raysteer calibrate rig looks --cameras cameras --board mock-galvo --out rig\n"
+            "raysteer calibrate rig looks --cameras cameras --board mock-head --survey hall --json",
+        .out = TakesOut::kOptional,
+        .takes_frames = true};
   }
 
   void declare(Options& options) override {
@@ -83,6 +90,8 @@ class CalibrateRig : public Command {
     options.option("--board", "FILE", &board_, "board file, or an installed one's name: how the rig is drawn")
         .required();
     options.option("--survey", "FILE", &survey_, "where the room's datums are, or an installed survey's name");
+    options.option("--previous", "FILE", &previous_, "earlier calibration of this rig, or its folder, to compare with");
+    options.option("--stations", "FILE", &stations_, "stations whose bounds are wanted, or an installed file's name");
   }
 
   Result<ExitCode> run(Context& context) override {
@@ -107,8 +116,12 @@ class CalibrateRig : public Command {
     const auto evaluation = calib::steer::evaluate(*solution, parts.held_out);
     RAYSTEER_TRY(evaluation);
     std::optional<rig::InRoom> room;
+    std::optional<proto::survey::Survey> survey;
     if (!survey_.empty()) {
-      auto tied = tie(context, *session, *solution);
+      auto read = rig::read_survey(survey_);
+      RAYSTEER_TRY(read);
+      survey = *std::move(read);
+      auto tied = tie(context, *session, *solution, *survey);
       RAYSTEER_TRY(tied);
       room = *std::move(tied);
     }
@@ -123,6 +136,30 @@ class CalibrateRig : public Command {
     const std::string verdict = evaluation->p95_mm <= kGoodMm     ? "good"
                                 : evaluation->p95_mm <= kUsableMm ? "usable"
                                                                   : "redo";
+    const auto stated = room ? std::optional(tie_of(*room)) : std::nullopt;
+    const auto& final_solution = room ? room->rig.solution : *solution;
+    const PlacedRig now = placed(*solution, room, exchange::rig_id(final_solution, stated));
+    const auto aimed = aim(now);
+    RAYSTEER_TRY(aimed);
+    report::RigResult result;
+    result.session = session_;
+    result.board = board_;
+    result.judgement = judge(verdict, *evaluation, *solution, room.has_value());
+    add_reach(result, now);
+    add_solution(result, now, *solution, *evaluation, parts.held_out);
+    if (room) {
+      add_datums(result, room->tie, *survey);
+    }
+    add_stations(result, *aimed);
+    const auto before = earlier(context);
+    RAYSTEER_TRY(before);
+    if (*before) {
+      RAYSTEER_TRY(add_difference(result, now, **before, *aimed));
+    }
+    report(context, *solution, *evaluation, error, verdict);
+    report_room(context, room);
+    report_reach(context, result);
+    print_difference(context, result);
     if (context.has_out()) {
       const exchange::RigMeta meta{.session = session_,
                                    .board = board_,
@@ -133,22 +170,93 @@ class CalibrateRig : public Command {
                                    .held_out_median_mm = evaluation->median_mm,
                                    .held_out_p95_mm = evaluation->p95_mm,
                                    .looks = static_cast<int>(solution->looks.size())};
-      RAYSTEER_TRY(exchange::write_file(
-          context.out() / "rig.toml",
-          room ? exchange::to_toml(room->rig.solution, tie_of(*room), meta) : exchange::to_toml(*solution, {}, meta)));
+      RAYSTEER_TRY(exchange::write_file(context.out() / "rig.toml", exchange::to_toml(final_solution, stated, meta)));
+      RAYSTEER_TRY(report::write_result(context.out(), result, context.json()));
     }
-    report(context, *solution, *evaluation, error, verdict);
-    report_room(context, room);
     return verdict == "redo" ? ExitCode::kVerdictRedo : ExitCode::kDone;
   }
 
  private:
-  Result<rig::InRoom> tie(Context& context, const session::Session& session, const Solution& solution) const {
-    const auto survey = rig::read_survey(survey_);
-    RAYSTEER_TRY(survey);
+  static Result<rig::InRoom> tie(Context& context, const session::Session& session, const Solution& solution,
+                                 const proto::survey::Survey& survey) {
     const auto views = rig::see_datums(session, kDatumLooks, context.stage("finding datums"));
     RAYSTEER_TRY(views);
-    return rig::tie_to_room(solution, *survey, *views);
+    return rig::tie_to_room(solution, survey, *views);
+  }
+
+  /// Stations that were asked for.
+  Result<std::vector<rig::AimedStation>> aim(const PlacedRig& now) const {
+    if (stations_.empty()) {
+      return std::vector<rig::AimedStation>();
+    }
+    if (!now.tied) {
+      return fail(RCode::kDatumsMissing, "stations are places in a room; --stations needs --survey");
+    }
+    const auto wanted = rig::read_stations(stations_);
+    RAYSTEER_TRY(wanted);
+    return rig::aim_stations(now.rig, *wanted);
+  }
+
+  /// The calibration to compare with: the one named, else the one that --out replaces, where there is one.
+  Result<std::optional<PlacedRig>> earlier(Context& context) const {
+    if (!previous_.empty()) {
+      const auto read = exchange::read_rig(previous_);
+      RAYSTEER_TRY(read);
+      return std::optional(placed(*read));
+    }
+    const auto replaced = context.previous_out();
+    std::error_code ignored;
+    if (!replaced || !std::filesystem::exists(*replaced / "rig.toml", ignored)) {
+      return std::optional<PlacedRig>();
+    }
+    const auto read = exchange::read_rig(*replaced);
+    if (!read) {
+      context.note("no comparison with the calibration that is replaced: " + read.error().message());
+      return std::optional<PlacedRig>();
+    }
+    return std::optional(placed(*read));
+  }
+
+  static report::Judgement judge(const std::string& verdict, const Evaluation& evaluation, const Solution& solution,
+                                 bool tied) {
+    report::Judgement judgement{.verdict = verdict,
+                                .summary = fmt::format("Looks that were not calibrated are hit within {:.2f} mm "
+                                                       "({:.2f} px), 95 %.",
+                                                       evaluation.p95_mm, evaluation.p95_px),
+                                .reasons = {},
+                                .advice = {}};
+    if (!tied) {
+      judgement.reasons.push_back("The rig is consistent with itself, but not tied to the room.");
+      judgement.advice.push_back("Survey four datums or more, and give --survey.");
+    }
+    if (verdict != "good") {
+      judgement.reasons.push_back(fmt::format("{:.1f} mm are asked for, 95 %.", kGoodMm));
+      judgement.advice.push_back("Take the looks that 'raysteer plan looks' chooses, with the mirror warmed up.");
+    }
+    if (!solution.off_drawing.empty()) {
+      judgement.reasons.push_back(fmt::format("{} numbers are further from the board file than its tolerances explain.",
+                                              solution.off_drawing.size()));
+      judgement.advice.push_back("Measure those parts and correct the board file: the next calibration starts nearer.");
+    }
+    return judgement;
+  }
+
+  static void report_reach(Context& context, const report::RigResult& result) {
+    if (result.reach.empty()) {
+      return;
+    }
+    context.json()["reach"] = {{"median_95_mm", result.reach_median_95_mm}, {"worst_95_mm", result.reach_worst_95_mm}};
+    context.print(
+        fmt::format("reach            sure to {:.2f} mm (95 %) over half of it, {:.2f} mm at its worst place, on {}\n",
+                    result.reach_median_95_mm, result.reach_worst_95_mm, result.floor));
+    for (const report::StationRow& station : result.stations) {
+      context.json()["stations"].push_back({{"name", station.name},
+                                            {"bound_95_mm", station.bound_95_mm},
+                                            {"tolerance_mm", station.tolerance_mm},
+                                            {"within", station.within}});
+      context.print(fmt::format("  {:<14} {:.2f} mm{}\n", station.name, station.bound_95_mm,
+                                station.within ? "" : fmt::format(" (allowed {:.1f})", station.tolerance_mm)));
+    }
   }
 
   static exchange::RoomTie tie_of(const rig::InRoom& room) {
@@ -218,6 +326,8 @@ class CalibrateRig : public Command {
   std::string cameras_;
   std::string board_;
   std::string survey_;
+  std::string previous_;
+  std::string stations_;
 };
 
 }  // namespace

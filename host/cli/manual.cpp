@@ -114,7 +114,8 @@ std::string errors_markdown() {
       "by\n"
       "the way of the light: 1 files and sessions, 2 decoding, 3 calibration, 4 scanning, 5 the tool itself, 6 "
       "devices, 7 "
-      "capture, 8 the pretend world, 9 the steered rig and its room, 10 tables and stations.\n\n"
+      "capture, 8 the pretend world, 9 the steered rig and its room, 10 tables and stations, 11 the "
+      "device's state, 12 its store, 13 the wire.\n\n"
       "| code | name | what | usual cause | remedy | exit |\n|---|---|---|---|---|---|\n";
   for (const RCode rcode : all_rcodes()) {
     const Explanation& row = raysteer::explain(rcode);

@@ -21,7 +21,7 @@ CLI::Option* add(CLI::App& app, const Option& option) {
           CLI::Option* added = app.add_option(option.name, *target);
           if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
             // An option takes one value each time; an argument takes the rest of the words.
-            added->expected(1, option.positional ? CLI::detail::expected_max_vector_size : 1);
+            added->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(option.positional);
           }
           return added;
         }

@@ -13,6 +13,10 @@
 namespace raysteer::host::cli {
 namespace {
 
+// Millimetres are taken for metres otherwise.
+constexpr double kNearestM = 0.1;
+constexpr double kFarthestM = 100;
+
 class PlanLooks : public Command {
  public:
   Manual manual() const override {
@@ -36,6 +40,10 @@ class PlanLooks : public Command {
   }
 
   Result<ExitCode> run(Context& context) override {
+    if (!(distance_ >= kNearestM && distance_ <= kFarthestM)) {
+      return fail(RCode::kBadValue, fmt::format("--distance is {}, expected {} to {}: it is in metres", distance_,
+                                                kNearestM, kFarthestM));
+    }
     const auto board = rig::read_board(board_);
     RAYSTEER_TRY(board);
     const auto drawing = rig::drawing_of(*board);

@@ -16,6 +16,7 @@
 #include "calib/scene/row_match.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/scan_result.hpp"
+#include "host/cli/scan_rig.hpp"
 #include "host/exchange/calibration_file.hpp"
 #include "host/exchange/ply.hpp"
 #include "host/exchange/write_file.hpp"
@@ -87,11 +88,16 @@ class Scan : public Command {
             "from half of the matches and reports on the other half. The length of the baseline is kept.\n\n"
             "With --out DIR: cloud.ply (metres, left camera's frame), result.json and report.html.\n\n"
             "--rectified needs no calibration: the views of a rectified pair are matched along their rows, and "
-            "disparities are judged in pixels.",
+            "disparities are judged in pixels.\n\n"
+            "--rig takes the calibration of a steered rig, and all looks of the session: they become one surface, and "
+            "where looks overlap it says by how many millimetres they differ. With --out DIR: surface.ply, a mesh that "
+            "'raysteer bake --surface' puts pictures on.",
         .example =
             "raysteer scan scene.toml --calibration calibration.toml --out scan\n"
             "raysteer scan scene.toml --calibration calibration.toml --refit-pose --json\n"
-            "raysteer scan figurine.toml --rectified",
+            "raysteer scan figurine.toml --rectified\n"
+            "raysteer scan looks --rig rig --out surface\n"
+            "raysteer scan looks --rig rig --without look-3 --json",
         .out = TakesOut::kOptional,
         .takes_frames = true};
   }
@@ -101,12 +107,23 @@ class Scan : public Command {
     options.option("--calibration", "FILE", &calibration_, "calibration to scan with, or its folder");
     options.flag("--refit-pose", refit_pose_, "solve the cameras' relative pose again from this scan");
     options.flag("--rectified", rectified_, "no calibration: match the rows of a rectified pair");
-    options.option("--look", "NAME", &look_, "which look of the session; the first if not given");
+    options.option("--rig", "FILE", &rig_, "calibration of a steered rig, or its folder: all looks, one surface");
+    options.option("--look", "NAME", &look_, "which look of the session [the first; with --rig all]");
+    options.option("--without", "NAME", &without_, "with --rig: leave this look out; may be given again");
   }
 
   Result<ExitCode> run(Context& context) override {
-    if (calibration_.empty() != rectified_) {
-      return fail(RCode::kUsage, "raysteer scan: give --calibration FILE, or --rectified for a rectified pair");
+    if (int{!calibration_.empty()} + int{!rig_.empty()} + int{rectified_} != 1) {
+      return fail(
+          RCode::kUsage,
+          "raysteer scan: give --calibration FILE, --rig FILE for a steered rig, or --rectified for a rectified "
+          "pair");
+    }
+    if (!rig_.empty() && refit_pose_) {
+      return fail(RCode::kUsage, "raysteer scan: --refit-pose goes with --calibration; a rig is calibrated as a whole");
+    }
+    if (rig_.empty() && !without_.empty()) {
+      return fail(RCode::kUsage, "raysteer scan: --without needs --rig FILE");
     }
     if (rectified_ && refit_pose_) {
       return fail(RCode::kUsage, "raysteer scan: --refit-pose needs --calibration FILE");
@@ -114,6 +131,13 @@ class Scan : public Command {
     const Result<Session> session = Session::open(session_, context.frames_root());
     if (!session) {
       return session.error();
+    }
+    if (!rig_.empty()) {
+      const auto named = [](const std::string& name) {
+        return name.empty() ? std::vector<std::string>() : std::vector{name};
+      };
+      return scan_rig(context, *session,
+                      {.session = session_, .rig = rig_, .looks = named(look_), .without = without_});
     }
     int look = 0;
     if (!look_.empty()) {
@@ -266,7 +290,9 @@ class Scan : public Command {
 
   std::string session_;
   std::string calibration_;
+  std::string rig_;
   std::string look_;
+  std::vector<std::string> without_;
   bool refit_pose_ = false;
   bool rectified_ = false;
 };

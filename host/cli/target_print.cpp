@@ -1,13 +1,17 @@
 // raysteer target print: a calibration target on paper, true to scale.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include "hal/base/datum_code.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/datum_sheet.hpp"
 #include "host/cli/target_sheet.hpp"
 #include "host/exchange/write_file.hpp"
-#include "host/report/calibration_result.hpp"
 
 namespace raysteer::host::cli {
 namespace {
@@ -23,19 +27,23 @@ class TargetPrint : public Command {
         .description =
             "Writes a PDF or SVG with a bar to measure, finds the target in its own drawing before it writes it, and\n"
             "prints the block that describes the target in a session file. Print at 100 %, measure the bar with a\n"
-            "steel rule, and give its length with --measured-mm: the block then has the size that was printed.",
+            "steel rule, and give its length with --measured-mm: the block then has the size that was printed.\n\n"
+            "--kind datum draws coded datums for the floor, --code says which, and the block is that of a survey file.",
         .example =
             "raysteer target print --kind charuco --columns 14 --rows 9 --square-mm 18 --out target.pdf\n"
             "raysteer target print --columns 9 --rows 6 --square-mm 25 --paper A3 --out target.svg\n"
-            "raysteer target print --columns 9 --rows 6 --square-mm 25 --paper A3 --measured-mm 199.4"};
+            "raysteer target print --columns 9 --rows 6 --square-mm 25 --paper A3 --measured-mm 199.4\n"
+            "raysteer target print --kind datum --code 23 --code 79 --radius-mm 18 --out datums.pdf"};
   }
 
   void declare(Options& options) override {
-    options.option("--kind", "KIND", &kind_, "chessboard or charuco [chessboard]").choices({"chessboard", "charuco"});
-    options.option("--columns", "N", &target_.columns, "chessboard: inner corners along x; charuco: squares")
-        .required();
-    options.option("--rows", "N", &target_.rows, "the same along y").required();
-    options.option("--square-mm", "MM", &square_mm_, "side of a square").required();
+    options.option("--kind", "KIND", &kind_, "chessboard, charuco or datum [chessboard]")
+        .choices({"chessboard", "charuco", "datum"});
+    options.option("--columns", "N", &target_.columns, "chessboard: inner corners along x; charuco: squares");
+    options.option("--rows", "N", &target_.rows, "the same along y");
+    options.option("--square-mm", "MM", &square_mm_, "side of a square");
+    options.option("--code", "N", &codes_, "datum: which; may be given again [all 16]");
+    options.option("--radius-mm", "MM", &radius_mm_, "datum: radius of its white disc; its black square has 7 radii");
     options.option("--marker-mm", "MM", &marker_mm_, "charuco: side of a marker [3/4 of a square]");
     options.option("--dictionary", "NAME", &target_.dictionary, "charuco: dictionary [5X5_1000]");
     options.option("--layout", "WHICH", &layout_, "charuco: OpenCV's layout since or before 4.6 [current]")
@@ -46,22 +54,26 @@ class TargetPrint : public Command {
   }
 
   Result<ExitCode> run(Context& context) override {
-    RAYSTEER_TRY(complete_target());
     const bool svg = out_.ends_with(".svg");
     if (!out_.empty() && !svg && !out_.ends_with(".pdf")) {
       return fail(RCode::kUsage, "raysteer target print: --out must end in .pdf or .svg, not '" + out_ + "'");
     }
     const Result<Paper> size = paper(paper_);
     RAYSTEER_TRY(size);
+    if (kind_ == "datum") {
+      return print_datums(context, *size, svg);
+    }
+    RAYSTEER_TRY(complete_target());
     const Result<TargetSheet> laid = lay_out(target_, *size);
     RAYSTEER_TRY(laid);
     RAYSTEER_TRY(check_sheet(target_, *laid));
     if (!out_.empty()) {
-      RAYSTEER_TRY(exchange::replace_file(out_, svg ? exchange::to_svg(laid->sheet) : exchange::to_pdf(laid->sheet)));
-      context.note(fmt::format("{}: {} on {}; print at 100 %, the bar must measure {:.0f} mm", out_,
-                               report::describe(target_), size->name, laid->bar_mm));
+      RAYSTEER_TRY(write(context, laid->sheet, svg, size->name, laid->bar_mm));
     }
-    RAYSTEER_TRY(scale_by_bar(context, laid->bar_mm));
+    const auto scale = scale_by_bar(context, laid->bar_mm);
+    RAYSTEER_TRY(scale);
+    target_.square_m = to_metres(1000 * target_.square_m * *scale);
+    target_.marker_m = to_metres(1000 * target_.marker_m * *scale);
     const std::string block = session_block(target_);
     context.print(block);
     context.json() = {
@@ -77,7 +89,63 @@ class TargetPrint : public Command {
   }
 
  private:
+  Result<ExitCode> print_datums(Context& context, const Paper& size, bool svg) {
+    if (target_.columns != 0 || target_.rows != 0 || square_mm_ != 0) {
+      return fail(RCode::kUsage,
+                  "raysteer target print: a datum has --radius-mm, not --columns, --rows or --square-mm");
+    }
+    if (!(radius_mm_ >= 1 && radius_mm_ <= 500)) {
+      return fail(RCode::kUsage,
+                  fmt::format("raysteer target print: --radius-mm takes 1 to 500, not {:g}", radius_mm_));
+    }
+    std::vector<unsigned> codes(datum_codes().begin(), datum_codes().end());
+    if (!codes_.empty()) {
+      codes.clear();
+    }
+    for (const std::string& text : codes_) {
+      unsigned code = 0;
+      if (std::from_chars(text.data(), text.data() + text.size(), code).ptr != text.data() + text.size()) {
+        return fail(RCode::kUsage, "raysteer target print: --code takes a number, not '" + text + "'");
+      }
+      if (std::ranges::find(codes, code) != codes.end()) {
+        return fail(RCode::kUsage, "raysteer target print: code " + text + " is given twice; datums are told by it");
+      }
+      codes.push_back(code);
+    }
+    const auto laid = lay_out_datums(codes, radius_mm_, size);
+    RAYSTEER_TRY(laid);
+    RAYSTEER_TRY(check_datums(codes, radius_mm_, *laid));
+    if (!out_.empty()) {
+      RAYSTEER_TRY(write(context, laid->sheet, svg, size.name, laid->bar_mm));
+    }
+    const auto scale = scale_by_bar(context, laid->bar_mm);
+    RAYSTEER_TRY(scale);
+    const double radius_m = to_metres(radius_mm_ * *scale);
+    const std::string block = survey_block(codes, radius_m);
+    context.print(block);
+    context.json() = {
+        {"kind", kind_},
+        {"codes", codes},
+        {"radius_m", radius_m},
+        {"paper", {{"name", size.name}, {"width_mm", laid->sheet.width_mm}, {"height_mm", laid->sheet.height_mm}}},
+        {"bar_mm", laid->bar_mm},
+        {"file", out_},
+        {"survey_block", block}};
+    return ExitCode::kDone;
+  }
+
+  Status write(Context& context, const exchange::Sheet& sheet, bool svg, const std::string& paper_name,
+               double bar_mm) const {
+    RAYSTEER_TRY(exchange::replace_file(out_, svg ? exchange::to_svg(sheet) : exchange::to_pdf(sheet)));
+    context.note(fmt::format("{}: {} on {}; print at 100 %, the bar must measure {:.0f} mm", out_, sheet.title,
+                             paper_name, bar_mm));
+    return ok();
+  }
+
   Status complete_target() {
+    if (target_.columns == 0 || target_.rows == 0 || square_mm_ == 0) {
+      return fail(RCode::kUsage, "raysteer target print: " + kind_ + " needs --columns, --rows and --square-mm");
+    }
     if (!(square_mm_ >= 0.5 && square_mm_ <= 1000)) {
       return fail(RCode::kUsage,
                   fmt::format("raysteer target print: --square-mm takes 0.5 to 1000, not {:g}", square_mm_));
@@ -94,9 +162,9 @@ class TargetPrint : public Command {
   }
 
   // Printers scale: the bar says by how much.
-  Status scale_by_bar(Context& context, double bar_mm) {
+  Result<double> scale_by_bar(Context& context, double bar_mm) const {
     if (measured_mm_ <= 0) {
-      return ok();
+      return 1.0;
     }
     const double scale = measured_mm_ / bar_mm;
     if (!(std::abs(scale - 1) < 0.2)) {
@@ -105,12 +173,10 @@ class TargetPrint : public Command {
                               "no measurement of it",
                               bar_mm, measured_mm_));
     }
-    target_.square_m = to_metres(1000 * target_.square_m * scale);
-    target_.marker_m = to_metres(1000 * target_.marker_m * scale);
     if (std::abs(scale - 1) > 0.005) {
       context.note(fmt::format("the printer scaled by {:.2f} %; the block has the printed size", 100 * scale));
     }
-    return ok();
+    return scale;
   }
 
   TargetSpec target_{.dictionary = "5X5_1000"};
@@ -118,6 +184,8 @@ class TargetPrint : public Command {
   std::string layout_ = "current";
   std::string paper_ = "A4";
   std::string out_;
+  std::vector<std::string> codes_;
+  double radius_mm_ = 0;
   double square_mm_ = 0;
   double marker_mm_ = 0;
   double measured_mm_ = 0;

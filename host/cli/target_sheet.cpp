@@ -17,22 +17,20 @@
 namespace raysteer::host::cli {
 namespace {
 
-constexpr double kMargin = 10;  // mm; office printers leave 4 to 6 mm white
-constexpr double kFoot = 16;    // mm below the squares for bar and text
-
 // Upright sheets, ISO 216 and ANSI.
 const std::array kPapers{Paper{"A4", 210, 297}, Paper{"A3", 297, 420},  Paper{"A2", 420, 594},
                          Paper{"A1", 594, 841}, Paper{"A0", 841, 1189}, Paper{"letter", 215.9, 279.4}};
 
 // White around the squares: half a square, so that the outermost corners stand clear, at least the printer's margin.
-double white(const TargetSpec& target) { return std::max(kMargin, 500 * target.square_m); }
+double white(const TargetSpec& target) { return std::max(kSheetMargin, 500 * target.square_m); }
 
 struct Need {
   double width, height;
 };
 Need need(const TargetSpec& target, double square_mm) {
-  const double around = 2 * std::max(kMargin, square_mm / 2);
-  return {(target.corner_columns() + 1) * square_mm + around, (target.corner_rows() + 1) * square_mm + around + kFoot};
+  const double around = 2 * std::max(kSheetMargin, square_mm / 2);
+  return {(target.corner_columns() + 1) * square_mm + around,
+          (target.corner_rows() + 1) * square_mm + around + kSheetFoot};
 }
 
 bool fits(const Need& need, double width, double height) {
@@ -72,7 +70,9 @@ void draw_bar(exchange::Sheet& sheet, double x, double y, double length) {
   }
 }
 
-// Paper as grey, blurred by (1 2 1)/4 both ways: a lens does, and sub-pixel refinement counts on it.
+}  // namespace
+
+// Blurred by (1 2 1)/4 both ways: a lens does, and sub-pixel refinement counts on it.
 Image<std::uint8_t> softened(const Image<float>& ink) {
   Image<std::uint8_t> grey(ink.width(), ink.height());
   grey.fill(255);
@@ -91,7 +91,17 @@ Image<std::uint8_t> softened(const Image<float>& ink) {
   return grey;
 }
 
-}  // namespace
+double draw_foot(exchange::Sheet& sheet, const std::string& what) {
+  const double bar_mm = sheet.width_mm >= 200 + 2 * kSheetMargin   ? 200
+                        : sheet.width_mm >= 100 + 2 * kSheetMargin ? 100
+                                                                   : 30;
+  const double foot = sheet.height_mm - kSheetMargin;
+  draw_bar(sheet, kSheetMargin, foot - 5, bar_mm);
+  sheet.texts.push_back(
+      {kSheetMargin, foot, 3,
+       fmt::format("Raysteer: {}. Print at 100 %. The bar is {:.0f} mm from end to end: measure it.", what, bar_mm)});
+  return bar_mm;
+}
 
 Result<Paper> paper(const std::string& name) {
   std::vector<std::string_view> known;
@@ -128,20 +138,14 @@ Result<TargetSheet> lay_out(const TargetSpec& target, const Paper& paper) {
   const double width = 1000 * art->width_m;
   const double height = 1000 * art->height_m;
   out.left_mm = (sheet.width_mm - width) / 2;
-  out.top_mm = std::max(white(target), (sheet.height_mm - kFoot - height) / 2);
+  out.top_mm = std::max(white(target), (sheet.height_mm - kSheetFoot - height) / 2);
   for (const calib::target::BlackRectangle& r : art->black) {
     sheet.black.push_back({out.left_mm + 1000 * r.x, out.top_mm + 1000 * r.y, 1000 * r.width, 1000 * r.height});
   }
-  out.bar_mm = sheet.width_mm >= 200 + 2 * kMargin ? 200 : sheet.width_mm >= 100 + 2 * kMargin ? 100 : 30;
-  const double foot = sheet.height_mm - kMargin;
-  draw_bar(sheet, kMargin, foot - 5, out.bar_mm);
   sheet.title = report::describe(target);
-  sheet.texts.push_back(
-      {kMargin, foot, 3,
-       fmt::format("Raysteer: {}{}. Print at 100 %. The bar is {:.0f} mm from end to end: measure it.", sheet.title,
-                   target.kind == TargetKind::kCharuco ? fmt::format(", markers {:g} mm", 1000 * target.marker_m)
-                                                       : std::string(),
-                   out.bar_mm)});
+  out.bar_mm = draw_foot(sheet, sheet.title + (target.kind == TargetKind::kCharuco
+                                                   ? fmt::format(", markers {:g} mm", 1000 * target.marker_m)
+                                                   : std::string()));
   return out;
 }
 

@@ -1,8 +1,10 @@
 // Lays a target out on paper: squares in the middle, a bar to measure and the target's name below.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
+#include "hal/base/image.hpp"
 #include "hal/base/result.hpp"
 #include "hal/base/target.hpp"
 #include "host/exchange/sheet.hpp"
@@ -31,6 +33,14 @@ Result<TargetSheet> lay_out(const TargetSpec& target, const Paper& paper);
 /// Draws the sheet as pixels and finds the target in them: is what will be printed what was asked?
 /// Errors: kInternal when it is not found or a corner lies more than 0.1 mm off.
 Status check_sheet(const TargetSpec& target, const TargetSheet& sheet);
+
+inline constexpr double kSheetMargin = 10;  ///< mm; office printers leave 4 to 6 mm white
+inline constexpr double kSheetFoot = 16;    ///< mm below what is printed, for bar and text
+
+/// The bar to measure and a line of text at the sheet's foot; gives the bar's length in mm.
+double draw_foot(exchange::Sheet& sheet, const std::string& what);
+/// Ink per pixel (0 to 1) as a camera sees the paper.
+Image<std::uint8_t> softened(const Image<float>& ink);
 
 /// "[[target]]" with the keys of a session file.
 std::string session_block(const TargetSpec& target);

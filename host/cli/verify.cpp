@@ -4,13 +4,20 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "calib/bake/ray_caster.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/rig_result.hpp"
 #include "host/pretend/truth_file.hpp"
 #include "host/rig/aimed_rig.hpp"
+#include "host/rig/close_loop.hpp"
 #include "host/rig/gather.hpp"
 #include "host/session/session.hpp"
 
@@ -31,11 +38,31 @@ Summary summarise(const std::vector<double>& millimetres) {
   return summary;
 }
 
-/// Where the true projector, without the mirror's repeatability, lights what should be a station's corners.
-std::vector<double> true_errors(const std::vector<rig::AimedStation>& aimed, const pretend::TruthFile& truth) {
+/// The room's true surfaces; nothing where the truth does not hold them all.
+std::optional<calib::bake::RayCaster> true_surfaces(const pretend::TruthFile& truth) {
+  calib::bake::TriangleMesh mesh;
+  for (const pretend::Triangle& triangle : truth.triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), triangle.begin(), triangle.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  auto caster = calib::bake::RayCaster::make(std::move(mesh));
+  return truth.has_surfaces && caster ? std::optional(*std::move(caster)) : std::nullopt;
+}
+
+/// Where the true projector, without the mirror's repeatability, lights what should be a station's corners: how far
+/// off across the way they are looked at.
+/// Once the loop was closed, with the mirror as it stood at the look.
+std::vector<double> true_errors(const std::vector<rig::AimedStation>& aimed, std::span<const calib::steer::Look> looks,
+                                const pretend::TruthFile& truth) {
   std::vector<double> errors;
+  const auto surfaces = true_surfaces(truth);
   for (const rig::AimedStation& one : aimed) {
-    const auto view = truth.projector->at(*one.station.command_rad);
+    const auto* look = rig::look_at(looks, one);
+    const auto stood = look == nullptr ? truth.angles_rad.end() : truth.angles_rad.find(look->name);
+    const bool known = one.station.stands_as_rad && stood != truth.angles_rad.end();
+    const auto view =
+        truth.projector->at_angles(known ? stood->second : truth.projector->angles(*one.station.command_rad));
     const Eigen::Vector3d eye = *truth.T_room_rig * view.centre();
     for (std::size_t k = 0; k < 4; ++k) {
       const auto ray = view.ray(one.panel[k]);
@@ -44,8 +71,18 @@ std::vector<double> true_errors(const std::vector<rig::AimedStation>& aimed, con
       }
       const Eigen::Vector3d direction = truth.T_room_rig->q * *ray;
       const Eigen::Vector3d& corner = one.corners_room[k];
-      const double way = one.normal_room.dot(corner - eye) / one.normal_room.dot(direction);
-      errors.push_back(1e3 * (eye + way * direction - corner).norm());
+      double way = one.normals_room[k].dot(corner - eye) / one.normals_room[k].dot(direction);
+      if (!one.content.plane) {
+        const auto triangle = surfaces ? surfaces->first(view.centre(), *ray) : std::nullopt;
+        if (!triangle) {
+          continue;
+        }
+        const calib::bake::SurfacePlane& plane = surfaces->plane(*triangle);
+        way = (plane.distance_m - plane.normal.dot(view.centre())) / plane.normal.dot(*ray);
+      }
+      const Eigen::Vector3d off = eye + way * direction - corner;
+      const Eigen::Vector3d& sight = one.sights_room[k];
+      errors.push_back(1e3 * (off - sight * sight.dot(off)).norm());
     }
   }
   return errors;
@@ -54,27 +91,38 @@ std::vector<double> true_errors(const std::vector<rig::AimedStation>& aimed, con
 class Verify : public Command {
  public:
   Manual manual() const override {
-    return {.summary = "Measure by how many millimetres the light misses its stations",
-            .description =
-                "Takes a session with a look at each station, as the looks.toml that 'raysteer bake' writes makes it, "
-                "and measures where the pixels that should light each station's corners land. The rig's cameras and "
-                "datums are the measure. Exit code 5 when a station is off by more than its tolerance.",
-            .example =
-                "raysteer capture --sim --looks tables/looks.toml --patterns fast --scene hall --out look\n"
-                "raysteer verify look --rig rig --stations stations.toml",
-            .out = TakesOut::kNo,
-            .takes_frames = true};
+    return {
+        .summary = "Measure by how many millimetres the light misses its stations",
+        .description =
+            "Takes a session with a look at each station, as the looks.toml that 'raysteer bake' writes makes it, "
+            "and measures where the pixels that should light each station's corners land. The rig's cameras and "
+            "datums are the measure, and how sure they are is stated with each station (95 %). Stations on a scanned "
+            "surface need --surface as they did when baked. Exit code 5 when what was measured and what it may be "
+            "off by are together more than a station's tolerance.\n\nWith --out DIR: result.json and report.html.",
+        .example =
+            "raysteer capture --sim --looks tables/looks.toml --patterns fast --scene hall --out look\n"
+            "raysteer verify look --rig rig --stations stations.toml",
+        .out = TakesOut::kOptional,
+        .takes_frames = true};
   }
 
   void declare(Options& options) override {
     options.argument("SESSION", &session_, "session file or its folder").required();
     options.option("--rig", "FILE", &rig_, "calibration of the rig, or its folder").required();
     options.option("--stations", "FILE", &stations_, "stations file, or an installed one's name").required();
+    options.option("--surface", "FILE", &surface_, "scanned surface, or its folder");
+    options.option("--refine", "SESSION", &refine_, "as for 'raysteer bake': the loop was closed by these looks");
   }
 
   Result<ExitCode> run(Context& context) override {
-    const auto rig = rig::read_aimed_rig(rig_, stations_);
+    auto rig = rig::read_aimed_rig(rig_, stations_, surface_);
     RAYSTEER_TRY(rig);
+    if (!refine_.empty()) {
+      const auto dots = session::Session::open(refine_, context.frames_root());
+      RAYSTEER_TRY(dots);
+      const auto closed = rig::close_loop_by(*dots, *rig, context.stage("closing the loop"));
+      RAYSTEER_TRY(closed);
+    }
     const auto session = session::Session::open(session_, context.frames_root());
     RAYSTEER_TRY(session);
     const auto gathered = rig::gather(*session, rig->room.solution.cameras, {.columns = 60, .rows = 40, .looks = {}},
@@ -88,7 +136,7 @@ class Verify : public Command {
         missing.push_back(one.station.name);
         continue;
       }
-      const auto station = rig::verify_station(rig->room, one, *look);
+      const auto station = rig::verify_station(rig->room, one, *look, rig->scene ? &*rig->scene : nullptr);
       RAYSTEER_TRY(station);
       verified.push_back(*station);
     }
@@ -98,38 +146,79 @@ class Verify : public Command {
     }
     const auto truth = pretend::truth_beside(session->file());
     RAYSTEER_TRY(truth);
-    return report(context, rig->aimed, verified, missing, *truth);
+    const ExitCode code = report(context, rig->aimed, verified, missing, gathered->observations.looks, *truth);
+    if (context.has_out()) {
+      RAYSTEER_TRY(report::write_result(context.out(), result(*rig, verified, context), context.json()));
+    }
+    return code;
   }
 
  private:
+  report::RigResult result(const rig::AimedRig& rig, const std::vector<rig::VerifiedStation>& verified,
+                           Context& context) const {
+    report::RigResult result;
+    result.kind = "verification";
+    result.session = session_;
+    result.board = rig.calibration.meta.board;
+    add_reach(result, placed(rig.calibration));
+    add_stations(result, rig.aimed);
+    add_verified(result, rig.aimed, verified);
+    const auto within = std::ranges::count_if(result.stations, &report::StationRow::within);
+    result.judgement.verdict = context.json()["verdict"];
+    result.judgement.summary = fmt::format(
+        "{} of {} stations surely lie within tolerance (95 %); corners are {:.2f} mm off in the mean, {:.2f} mm at "
+        "most.",
+        within, result.stations.size(), context.json()["mean_mm"].get<double>(),
+        context.json()["max_mm"].get<double>());
+    for (const report::StationRow& station : result.stations) {
+      if (!std::isfinite(station.error_mm)) {
+        result.judgement.reasons.push_back("Station '" + station.name + "' was not looked at.");
+      } else if (!station.within) {
+        result.judgement.reasons.push_back(fmt::format("Station '{}': {:.2f} mm (sure to {:.2f}), allowed {:.1f}.",
+                                                       station.name, station.error_mm, station.sure_mm,
+                                                       station.tolerance_mm));
+      }
+    }
+    return result;
+  }
+
   static ExitCode report(Context& context, const std::vector<rig::AimedStation>& aimed,
                          const std::vector<rig::VerifiedStation>& verified, const std::vector<std::string>& missing,
-                         const std::optional<pretend::TruthFile>& truth) {
+                         std::span<const calib::steer::Look> looks, const std::optional<pretend::TruthFile>& truth) {
     Json& json = context.json();
     std::vector<double> errors;
     std::vector<std::string> lines;
     std::size_t within = 0;
     for (const rig::VerifiedStation& one : verified) {
       const auto& station = std::ranges::find(aimed, one.name, [](const auto& a) { return a.station.name; })->station;
-      const bool good = station.tolerance_mm <= 0 || one.error_mm <= station.tolerance_mm;
+      const bool good = one.within(station.tolerance_mm);
       within += good ? 1 : 0;
       errors.insert(errors.end(), one.corner_mm.begin(), one.corner_mm.end());
       json["stations"].push_back({{"name", one.name},
                                   {"error_mm", one.error_mm},
+                                  {"sure_mm", one.bound_95_mm - one.error_mm},
+                                  {"bound_95_mm", one.bound_95_mm},
                                   {"corners_mm", one.corner_mm},
+                                  {"corners_sure_mm", one.sure_mm},
                                   {"tolerance_mm", station.tolerance_mm},
                                   {"within", good}});
-      lines.push_back(fmt::format("{:<16} {:.2f} mm{}\n", one.name, one.error_mm,
-                                  good ? "" : fmt::format(" (allowed {:.1f})", station.tolerance_mm)));
+      if (one.points > 0) {
+        json["stations"].back()["picture_95_mm"] = one.picture_95_mm;
+        json["stations"].back()["points"] = one.points;
+      }
+      lines.push_back(fmt::format("{:<16} {:.2f} mm (sure to {:.2f}){}{}\n", one.name, one.error_mm,
+                                  one.bound_95_mm - one.error_mm,
+                                  station.tolerance_mm > 0 ? fmt::format(", allowed {:.1f}", station.tolerance_mm) : "",
+                                  good ? "" : ": not sure to be within"));
     }
     const Summary summary = summarise(errors);
     const bool all = within == verified.size() && missing.empty();
     json["mean_mm"] = summary.mean_mm;
     json["max_mm"] = summary.max_mm;
     json["verdict"] = all ? "good" : "redo";
-    context.print(
-        fmt::format("{} of {} stations within tolerance; corners {:.2f} mm off in the mean, {:.2f} mm at most\n",
-                    within, verified.size() + missing.size(), summary.mean_mm, summary.max_mm));
+    context.print(fmt::format(
+        "{} of {} stations surely within tolerance (95 %); corners {:.2f} mm off in the mean, {:.2f} mm at most\n",
+        within, verified.size() + missing.size(), summary.mean_mm, summary.max_mm));
     for (const std::string& line : lines) {
       context.print(line);
     }
@@ -138,7 +227,7 @@ class Verify : public Command {
       context.print(fmt::format("{:<16} was not looked at\n", name));
     }
     if (truth && truth->projector && truth->T_room_rig) {
-      const Summary real = summarise(true_errors(aimed, *truth));
+      const Summary real = summarise(true_errors(aimed, looks, *truth));
       json["truth"] = {{"mean_mm", real.mean_mm}, {"max_mm", real.max_mm}};
       context.print(fmt::format("error against the truth: {:.2f} mm in the mean, {:.2f} mm at most\n", real.mean_mm,
                                 real.max_mm));
@@ -149,6 +238,8 @@ class Verify : public Command {
   std::string session_;
   std::string rig_;
   std::string stations_;
+  std::string surface_;
+  std::string refine_;
 };
 
 }  // namespace

@@ -8,12 +8,14 @@
 #include "host/exchange/exports.hpp"
 #include "host/exchange/number_text.hpp"
 #include "host/exchange/write_file.hpp"
+#include "proto/document/toml_text.hpp"
 
 namespace raysteer::host::exchange {
 namespace {
 
 using calib::model::Device;
 using calib::model::Rig;
+namespace document = proto::document;
 
 // Devices and covariance: what the id stands for.
 std::string rig_text(const Rig& rig) {
@@ -33,7 +35,8 @@ std::string target_text(const TargetSpec& target) {
       fmt::format("\n[target]\nkind = \"{}\"\ncolumns = {}\nrows = {}\nsquare_m = {}\n",
                   charuco ? "charuco" : "chessboard", target.columns, target.rows, exact(target.square_m));
   if (charuco) {
-    text += fmt::format("marker_m = {}\ndictionary = {}\n", exact(target.marker_m), toml_text(target.dictionary));
+    text +=
+        fmt::format("marker_m = {}\ndictionary = {}\n", exact(target.marker_m), document::quoted(target.dictionary));
     if (target.layout != CharucoLayout::kAuto) {
       text += fmt::format("layout = \"{}\"\n", target.layout == CharucoLayout::kLegacy ? "legacy" : "current");
     }
@@ -75,7 +78,8 @@ std::string to_toml(const Rig& rig, const CalibrationMeta& meta) {
       "session = {}\n"
       "verdict = {}\n"
       "rms_px = {}\n",
-      RAYSTEER_VERSION, calibration_id(rig), toml_text(meta.session), toml_text(meta.verdict), exact(meta.rms_px));
+      RAYSTEER_VERSION, calibration_id(rig), document::quoted(meta.session), document::quoted(meta.verdict),
+      exact(meta.rms_px));
   if (meta.held_out_p95_px > 0) {
     text += fmt::format("held_out_p95_px = {}\n", exact(meta.held_out_p95_px));
   }

@@ -6,9 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "proto/document/toml_text.hpp"
+
 namespace raysteer::host::exchange {
 
 using calib::model::Device;
+namespace document = proto::document;
 
 std::string number_array(std::span<const double> values) {
   std::string text;
@@ -16,21 +19,6 @@ std::string number_array(std::span<const double> values) {
     text += (text.empty() ? "" : ", ") + exact(value);
   }
   return "[" + text + "]";
-}
-
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') {
-      out += '\\';
-      out += letter;
-    } else if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(letter));
-    } else {
-      out += letter;
-    }
-  }
-  return out + "\"";
 }
 
 std::string device_text(const Device& device) {
@@ -51,7 +39,7 @@ std::string device_text(const Device& device) {
       "distortion = {}\n"
       "rotation_wxyz = {}\n"
       "translation_m = {}\n",
-      toml_text(device.name), device.kind == calib::model::DeviceKind::kProjector ? "projector" : "camera",
+      document::quoted(device.name), device.kind == calib::model::DeviceKind::kProjector ? "projector" : "camera",
       camera.width, camera.height, number_array(std::array{camera.fx, camera.fy}),
       number_array(std::array{camera.cx, camera.cy}), calib::model::to_string(camera.lens), number_array(distortion),
       number_array(std::array{q.w(), q.x(), q.y(), q.z()}), number_array(std::array{t.x(), t.y(), t.z()}));
@@ -60,7 +48,7 @@ std::string device_text(const Device& device) {
 std::string covariance_text(const std::vector<std::string>& parameters, const Eigen::MatrixXd& covariance) {
   std::string text = "\n[covariance]\nparameters = [";
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + toml_text(parameters[i]);
+    text += (i == 0 ? "" : ", ") + document::quoted(parameters[i]);
   }
   text += "]\nmatrix = [\n";
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) {

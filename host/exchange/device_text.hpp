@@ -14,8 +14,6 @@ namespace raysteer::host::exchange {
 
 /// "[0.1, 800.0]", exact.
 std::string number_array(std::span<const double> values);
-/// A basic TOML string, quotes included.
-std::string toml_text(std::string_view text);
 /// A [[device]] table.
 std::string device_text(const calib::model::Device& device);
 /// A [covariance] table.

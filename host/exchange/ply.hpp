@@ -1,9 +1,11 @@
-// Point clouds as binary little-endian PLY: what CloudCompare, MeshLab, Open3D and Blender read.
+// Point clouds and surfaces as binary little-endian PLY: what CloudCompare, MeshLab, Open3D and Blender read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace raysteer::host::exchange {
 
@@ -16,5 +18,9 @@ struct PlyPoint {
 
 /// The file's bytes: x y z nx ny nz sigma red green blue.
 std::string to_ply(std::span<const PlyPoint> points);
+
+using PlyTriangle = std::array<std::uint32_t, 3>;
+/// The same and, behind them, triangles between them. `comment`: one line for the header.
+std::string to_ply(std::span<const PlyPoint> points, std::span<const PlyTriangle> triangles, std::string_view comment);
 
 }  // namespace raysteer::host::exchange

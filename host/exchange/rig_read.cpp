@@ -44,6 +44,9 @@ void read_mirror(TomlTable& table, SteeredProjector& projector) {
   const bool head = projector.kind == MirrorKind::kHead;
   projector.least_rad = pair(table, "least_rad");
   projector.most_rad = pair(table, "most_rad");
+  if (!(projector.least_rad.array() < projector.most_rad.array()).all()) {
+    table.fault(RCode::kBadCalibrationFile, "least_rad", "must be below most_rad on both axes");
+  }
   if (head) {
     projector.outer_axis = direction(table, "outer_axis");
     projector.outer_point = vector(table, "outer_point_m");
@@ -61,6 +64,9 @@ void read_mirror(TomlTable& table, SteeredProjector& projector) {
                           .offset_m = planes[k].number("offset_m", {-kHuge, kHuge}),
                           .size_m = pair(planes[k], "size_m"),
                           .ellipse = planes[k].choice("outline", {"ellipse", "rectangle"}) == 0};
+    if (projector.parts[k].size_m.minCoeff() < 0) {
+      planes[k].fault(RCode::kBadCalibrationFile, "size_m", "must not be negative");
+    }
     planes[k].finish();
   }
   std::vector<TomlTable> curves = table.tables("curve");

@@ -6,12 +6,14 @@
 
 #include "host/exchange/device_text.hpp"
 #include "host/exchange/rig_file.hpp"
+#include "proto/document/toml_text.hpp"
 
 namespace raysteer::host::exchange {
 namespace {
 
 using calib::model::SteeredProjector;
 using calib::steer::Solution;
+namespace document = proto::document;
 
 constexpr std::array kRoomParameters{"room.rx", "room.ry", "room.rz", "room.tx", "room.ty", "room.tz"};
 
@@ -94,9 +96,10 @@ std::string rig_id(const Solution& solution, const std::optional<RoomTie>& room)
 
 std::string to_toml(const Solution& solution, const std::optional<RoomTie>& room, const RigMeta& meta) {
   const std::string numbers = numbers_text(solution, room);
-  std::string origin = fmt::format(
-      "\n[origin]\nsession = {}\nboard = {}\nverdict = {}\nwhitened_rms = {}\nlooks = {}\n", toml_text(meta.session),
-      toml_text(meta.board), toml_text(meta.verdict), exact(meta.whitened_rms), meta.looks);
+  std::string origin =
+      fmt::format("\n[origin]\nsession = {}\nboard = {}\nverdict = {}\nwhitened_rms = {}\nlooks = {}\n",
+                  document::quoted(meta.session), document::quoted(meta.board), document::quoted(meta.verdict),
+                  exact(meta.whitened_rms), meta.looks);
   if (meta.held_out_p95_px > 0) {
     origin +=
         fmt::format("held_out_median_px = {}\nheld_out_p95_px = {}\nheld_out_median_mm = {}\nheld_out_p95_mm = {}\n",

@@ -48,6 +48,16 @@ std::string to_pdf(const Sheet& sheet) {
                     (sheet.height_mm - r.y - r.height) * kPointsPerMm, r.width * kPointsPerMm, r.height * kPointsPerMm);
   }
   content += sheet.black.empty() ? "" : "f\n";
+  for (const Sheet::Outline& outline : sheet.outlines) {
+    content += outline.white ? "1 g\n" : "0 g\n";
+    const char* step = "m";
+    for (const auto& [x, y] : outline.corners) {
+      content += fmt::format("{:.6f} {:.6f} {}\n", x * kPointsPerMm, (sheet.height_mm - y) * kPointsPerMm, step);
+      step = "l";
+    }
+    content += "h f\n";
+  }
+  content += sheet.outlines.empty() ? "" : "0 g\n";
   for (const Sheet::Text& text : sheet.texts) {
     content += fmt::format("BT /F1 {:.3f} Tf {:.6f} {:.6f} Td {} Tj ET\n", text.size_mm * kPointsPerMm,
                            text.x * kPointsPerMm, (sheet.height_mm - text.y) * kPointsPerMm, pdf_string(text.words));
@@ -84,6 +94,15 @@ std::string to_svg(const Sheet& sheet) {
     text += fmt::format("M{:.6f} {:.6f}h{:.6f}v{:.6f}h-{:.6f}z\n", r.x, r.y, r.width, r.height, r.width);
   }
   text += "\"/>\n";
+  for (const Sheet::Outline& outline : sheet.outlines) {
+    text += fmt::format("<path fill=\"#{}\" d=\"", outline.white ? "fff" : "000");
+    char step = 'M';
+    for (const auto& [x, y] : outline.corners) {
+      text += fmt::format("{}{:.6f} {:.6f}", step, x, y);
+      step = 'L';
+    }
+    text += "z\"/>\n";
+  }
   for (const Sheet::Text& line : sheet.texts) {
     text += fmt::format(
         "<text x=\"{:.6f}\" y=\"{:.6f}\" font-size=\"{:g}\" font-family=\"Helvetica, Arial, "

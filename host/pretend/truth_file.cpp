@@ -170,6 +170,10 @@ Result<TruthFile> truth_from_json(std::string_view text) {
     if (json.contains("T_room_rig")) {
       truth.T_room_rig = pose_of(json.at("T_room_rig"));
     }
+    for (const Json& look : json.value("looks", Json::array())) {
+      const Json& angles = look.at("mirror_rad");
+      truth.angles_rad[look.at("name").get<std::string>()] = {angles.at(0).get<double>(), angles.at(1).get<double>()};
+    }
     return truth;
   } catch (const std::exception& exception) {
     return fail(RCode::kBadValue, std::string("truth.json: ") + exception.what());

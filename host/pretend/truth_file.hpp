@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,6 +34,8 @@ struct TruthFile {
   /// Of the pretend rig; read only. What the mirror does besides (lag, repeatability, drift) is not in it.
   std::optional<calib::model::SteeredProjector> projector = {};
   std::optional<calib::model::Pose> T_room_rig = {};  ///< of the pretend rig; read only
+  /// Where the mirror stood at each look, mechanical angles with all that it errs by; read only.
+  std::map<std::string, Eigen::Vector2d> angles_rad = {};
 };
 
 std::string to_json(const TruthFile& truth);

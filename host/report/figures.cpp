@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "host/report/color.hpp"
 #include "host/report/html.hpp"
+#include "host/report/scale.hpp"
 #include "host/report/svg.hpp"
 
 namespace raysteer::host::report {
@@ -23,10 +23,7 @@ constexpr const char* kInk = "#20303c";
 /// Device colours of bars: blue, orange, green (Okabe and Ito 2008, told apart by all readers).
 constexpr std::array kDeviceColors{"#0072b2", "#e69f00", "#009e73", "#cc79a7"};
 
-std::string figure(const Caption& caption, const std::string& drawing) {
-  return fmt::format("<figure>\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n", escape(caption.title),
-                     drawing, escape(caption.text));
-}
+std::string figure(const Caption& caption, const std::string& drawing) { return figure_of(caption, drawing, false); }
 
 double plot_height(int width, int height) { return std::clamp(kPlot * height / std::max(1, width), 90.0, 420.0); }
 
@@ -46,65 +43,13 @@ void image_axes(Svg& svg, int width, int height, double plot_h) {
   svg.path(fmt::format("M{0} {1}h{2}v{3:.1f}h-{2}z", kLeft, kTop, kPlot, plot_h), "frame");
 }
 
-struct Scale {
-  double low = 0;
-  double high = 1;
-  Palette palette = Palette::kSingle;
-  Color color(double value) const {
-    const double part = (value - low) / (high - low);
-    switch (palette) {
-      case Palette::kSequential:
-        return sequential(part);
-      case Palette::kDiverging:
-        return diverging(2 * part - 1);
-      case Palette::kSingle:
-        break;
-    }
-    return single(part);
-  }
-};
-
-Scale scale_of(const Grid& grid, Palette palette) {
-  double least = HUGE_VAL, most = -HUGE_VAL;
-  for (const double value : grid.values) {
-    if (std::isfinite(value)) {
-      least = std::min(least, value);
-      most = std::max(most, value);
-    }
-  }
-  if (!(most >= least)) {
-    return {0, 1, palette};
-  }
-  if (palette == Palette::kDiverging) {
-    const double size = std::max({std::abs(least), std::abs(most), 1e-12});
-    return {-size, size, palette};
-  }
-  const double low = palette == Palette::kSingle ? std::min(0.0, least) : least;
-  return {low, most > low ? most : low + 1, palette};
-}
-
-void color_bar(Svg& svg, const Scale& scale, std::string_view unit, double plot_h) {
-  constexpr int kSteps = 40;
-  const double x = kLeft + kPlot + 14;
-  for (int i = 0; i < kSteps; ++i) {
-    const double value = scale.high - (scale.high - scale.low) * (i + 0.5) / kSteps;
-    svg.rect(x, kTop + plot_h * i / kSteps, 11, plot_h / kSteps + 0.6, to_hex(scale.color(value)));
-  }
-  const double step = nice_step(scale.high - scale.low, 5);
-  for (double value = std::ceil(scale.low / step) * step; value <= scale.high * (1 + 1e-9) + 1e-15; value += step) {
-    const double at = kTop + plot_h * (scale.high - value) / (scale.high - scale.low);
-    svg.text(x + 15, at + 3.5, tick_label(value, step));
-  }
-  svg.text(x, kTop + plot_h + 16, unit, Anchor::kStart, "unit");
-}
-
 }  // namespace
 
 std::string heat_map(const Grid& grid, int width, int height, std::string_view unit, Palette palette,
                      const Caption& caption) {
   const double plot_h = plot_height(width, height);
   Svg svg(kWidth, kTop + plot_h + kBottom, caption.title);
-  const Scale scale = scale_of(grid, palette);
+  const Scale scale = scale_of(grid.values, palette);
   const double cell_w = kPlot / std::max(1, grid.columns);
   const double cell_h = plot_h / std::max(1, grid.rows);
   const bool labels = cell_w >= 27 && cell_h >= 13;
@@ -131,7 +76,7 @@ std::string heat_map(const Grid& grid, int width, int height, std::string_view u
     }
   }
   image_axes(svg, width, height, plot_h);
-  color_bar(svg, scale, unit, plot_h);
+  color_bar(svg, scale, unit, kLeft + kPlot + 14, kTop, plot_h);
   return figure(caption, svg.take());
 }
 

@@ -6,15 +6,9 @@
 #include <vector>
 
 #include "host/report/result.hpp"
+#include "host/report/scale.hpp"
 
 namespace raysteer::host::report {
-
-struct Caption {
-  std::string title;
-  std::string text;
-};
-
-enum class Palette { kSingle, kSequential, kDiverging };
 
 /// Cells of a device's image (`width` x `height` px) coloured by value, the value written in each when there is room.
 /// Diverging colours are symmetric about zero. Cells without a value are hatched.

@@ -8,6 +8,8 @@
 #include "host/exchange/write_file.hpp"
 #include "host/report/figures.hpp"
 #include "host/report/html.hpp"
+#include "host/report/numbers.hpp"
+#include "host/report/rig_page.hpp"
 #include "host/report/style.hpp"
 #include "host/report/svg.hpp"
 
@@ -27,28 +29,21 @@ std::string list(const std::vector<std::string>& items, const char* title) {
   return text + "</ul>\n";
 }
 
-std::string judgement_section(const Judgement& judgement) {
-  return fmt::format("<header class=\"{0}\">\n<p class=\"verdict\">{0}</p>\n<h1>{1}</h1>\n", escape(judgement.verdict),
-                     escape(judgement.summary)) +
-         list(judgement.reasons, "Why") + list(judgement.advice, "What to do") + "</header>\n";
-}
-
-// The few numbers people look for first. Those not known are left out.
-class Numbers {
- public:
-  void add(double value, std::string_view unit, std::string_view meaning) {
-    if (std::isfinite(value)) {
-      add(fmt::format("{} {}", brief(value), unit), meaning);
+/// Numbers stay on the line of their units.
+std::string unbroken(std::string text) {
+  for (const std::string_view unit : {" %", " mm", " px"}) {
+    for (std::size_t at = text.find(unit); at != std::string::npos; at = text.find(unit, at + 1)) {
+      text.replace(at, 1, "\u00a0");
     }
   }
-  void add(const std::string& value, std::string_view meaning) {
-    items_ += fmt::format("<li><b>{}</b><span>{}</span></li>\n", escape(value), escape(meaning));
-  }
-  std::string take() const { return "<ul class=\"numbers\">\n" + items_ + "</ul>\n"; }
+  return text;
+}
 
- private:
-  std::string items_;
-};
+std::string judgement_section(const Judgement& judgement) {
+  return fmt::format("<header class=\"{0}\">\n<p class=\"verdict\">{0}</p>\n<h1>{1}</h1>\n", escape(judgement.verdict),
+                     unbroken(escape(judgement.summary))) +
+         list(judgement.reasons, "Why") + list(judgement.advice, "What to do") + "</header>\n";
+}
 
 std::string with_thousands(std::int64_t count) {
   std::string digits = std::to_string(count);
@@ -307,6 +302,14 @@ std::string body(const ScanResult& result, const std::filesystem::path& folder) 
                             RAYSTEER_VERSION);
 }
 
+std::string body(const RigResult& result, const std::filesystem::path&) { return rig_body(result); }
+
+std::string title(const CalibrationResult&) { return "Calibration"; }
+std::string title(const ScanResult&) { return "Scan"; }
+std::string title(const RigResult& result) {
+  return result.kind == "tables" ? "Stations" : result.kind == "verification" ? "Verification" : "Rig";
+}
+
 // Cells without a value; shared by all drawings of the page.
 constexpr const char* kHatch =
     "<svg width=\"0\" height=\"0\" style=\"position:absolute\" aria-hidden=\"true\"><defs><pattern id=\"hatch\" "
@@ -321,7 +324,7 @@ constexpr const char* kHatch =
 std::string page(const AnyResult& result, const std::filesystem::path& folder) {
   const Judgement& judgement =
       std::visit([](const auto& known) -> const Judgement& { return known.judgement; }, result);
-  const char* kind = std::holds_alternative<ScanResult>(result) ? "Scan" : "Calibration";
+  const std::string kind = std::visit([](const auto& known) { return title(known); }, result);
   return fmt::format(
              "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
              "content=\"width=device-width, initial-scale=1\">\n<title>{}: "

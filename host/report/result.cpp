@@ -1,36 +1,14 @@
 #include "host/report/result.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <type_traits>
+#include <utility>
 
 #include "host/exchange/write_file.hpp"
+#include "host/report/archive.hpp"
 #include "host/report/page.hpp"
+#include "host/report/rig_members.hpp"
 
 namespace raysteer::host::report {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr int kFormatVersion = 1;
-
-// Each structure lists its members once; Writer and Reader walk the list in turn.
-
-template <class Archive>
-void members(Archive& archive, Grid& grid) {
-  archive("columns", grid.columns);
-  archive("rows", grid.rows);
-  archive("values", grid.values);
-}
-
-template <class Archive>
-void members(Archive& archive, Judgement& judgement) {
-  archive("verdict", judgement.verdict);
-  archive("summary", judgement.summary);
-  archive("reasons", judgement.reasons);
-  archive("advice", judgement.advice);
-}
 
 template <class Archive>
 void members(Archive& archive, ParameterRow& row) {
@@ -123,12 +101,6 @@ void members(Archive& archive, Histogram& histogram) {
 }
 
 template <class Archive>
-void members(Archive& archive, Fact& fact) {
-  archive("name", fact.name);
-  archive("value", fact.value);
-}
-
-template <class Archive>
 void members(Archive& archive, ScanResult& result) {
   archive("judgement", result.judgement);
   archive("session", result.session);
@@ -157,103 +129,9 @@ void members(Archive& archive, ScanResult& result) {
   archive("facts", result.facts);
 }
 
-class Writer {
- public:
-  template <class T>
-  void operator()(const char* key, T& value) {
-    object_[key] = to_json(value);
-  }
-  template <class T>
-  static Json write(T& value) {
-    Writer writer;
-    members(writer, value);
-    return std::move(writer.object_);
-  }
+namespace {
 
- private:
-  static Json to_json(double value) {
-    if (std::isfinite(value)) {
-      return value;
-    }
-    return std::isinf(value) ? Json(value > 0 ? "infinite" : "-infinite") : Json();
-  }
-  static Json to_json(bool value) { return value; }
-  static Json to_json(int value) { return value; }
-  static Json to_json(std::int64_t value) { return value; }
-  static Json to_json(std::string& value) { return value; }
-  // Thousands of these: an array each, to a ten-thousandth of a pixel.
-  static Json to_json(ResidualVector& value) {
-    const auto round = [](double number) { return std::round(number * 1e4) / 1e4; };
-    return Json::array({value.view, round(value.x), round(value.y), round(value.dx), round(value.dy), value.kept});
-  }
-  template <class T>
-  static Json to_json(std::vector<T>& values) {
-    Json array = Json::array();
-    for (T& value : values) {
-      array.push_back(to_json(value));
-    }
-    return array;
-  }
-  template <class T>
-  requires std::is_class_v<T>
-  static Json to_json(T& value) { return write(value); }
-
-  Json object_ = Json::object();
-};
-
-// Throws nlohmann's exceptions or std::runtime_error; read_result turns them into an error.
-class Reader {
- public:
-  explicit Reader(const Json& object) : object_(object) {}
-  template <class T>
-  void operator()(const char* key, T& value) {
-    try {
-      from_json(object_.at(key), value);
-    } catch (const Json::exception& error) {
-      throw std::runtime_error(std::string(key) + ": " + error.what());
-    }
-  }
-
- private:
-  static void from_json(const Json& json, double& value) {
-    if (json.is_string()) {
-      value = json.get<std::string>() == "infinite" ? HUGE_VAL : -HUGE_VAL;
-    } else {
-      value = json.is_null() ? kUnknown : json.get<double>();
-    }
-  }
-  static void from_json(const Json& json, bool& value) { json.get_to(value); }
-  static void from_json(const Json& json, int& value) { json.get_to(value); }
-  static void from_json(const Json& json, std::int64_t& value) { json.get_to(value); }
-  static void from_json(const Json& json, std::string& value) { json.get_to(value); }
-  static void from_json(const Json& json, ResidualVector& value) {
-    value = {json.at(0), json.at(1), json.at(2), json.at(3), json.at(4), json.at(5)};
-  }
-  template <class T>
-  static void from_json(const Json& json, std::vector<T>& values) {
-    values.clear();
-    for (const Json& item : json) {
-      from_json(item, values.emplace_back());
-    }
-  }
-  static void from_json(const Json& json, Grid& grid) {
-    Reader reader(json);
-    members(reader, grid);
-    if (grid.columns < 0 || grid.rows < 0 || grid.columns > 1000 || grid.rows > 1000 ||
-        grid.values.size() != static_cast<std::size_t>(grid.columns * grid.rows)) {
-      throw std::runtime_error("a map has " + std::to_string(grid.values.size()) + " values for " +
-                               std::to_string(grid.columns) + " x " + std::to_string(grid.rows) + " cells");
-    }
-  }
-  template <class T>
-  requires std::is_class_v<T>
-  static void from_json(const Json& json, T& value) {
-    Reader reader(json);
-    members(reader, value);
-  }
-
-  const Json& object_;
-};
+constexpr int kFormatVersion = 1;
 
 void add_known(Json& object, const char* key, double value) {
   if (std::isfinite(value)) {
@@ -356,22 +234,72 @@ Json summary_of(const ScanResult& result) {
   return object;
 }
 
+Json summary_of(const RigResult& result) {
+  Json object = {{"kind", result.kind}};
+  add_judgement(object, result.judgement);
+  object["session"] = result.session;
+  object["board"] = result.board;
+  object["calibration_id"] = result.calibration_id;
+  object["tied_to_room"] = result.tied_to_room;
+  Json reach = Json::object();
+  add_known(reach, "median_95_mm", result.reach_median_95_mm);
+  add_known(reach, "worst_95_mm", result.reach_worst_95_mm);
+  if (!reach.empty()) {
+    object["reach"] = reach;
+  }
+  for (const StationRow& station : result.stations) {
+    Json row = {{"name", station.name}, {"tolerance_mm", station.tolerance_mm}, {"within", station.within}};
+    add_known(row, "error_mm", station.error_mm);
+    add_known(row, "bound_95_mm", station.bound_95_mm);
+    add_known(row, "moved_mm", station.moved_mm);
+    object["stations"].push_back(row);
+  }
+  for (const RigDifferenceResult& difference : result.difference) {
+    object["difference"] = difference_json(difference);
+  }
+  return object;
+}
+
 }  // namespace
+
+Json difference_json(const RigDifferenceResult& difference) {
+  Json object = {{"earlier", difference.earlier}, {"frame", difference.frame}, {"sentence", difference.sentence}};
+  add_known(object, "mean_mm", difference.mean_mm);
+  add_known(object, "p95_mm", difference.p95_mm);
+  add_known(object, "max_mm", difference.max_mm);
+  add_known(object, "whole_rms_mm", difference.whole_rms_mm);
+  add_known(object, "inside_rms_mm", difference.inside_rms_mm);
+  add_known(object, "beyond_chance", difference.beyond_chance);
+  add_known(object, "turned_mrad", difference.turned_mrad);
+  add_known(object, "shifted_mm", difference.shifted_mm);
+  return object;
+}
 
 Json summary_json(const AnyResult& result) {
   return std::visit([](const auto& known) { return summary_of(known); }, result);
 }
 
-Json result_json(const AnyResult& result) {
+namespace {
+
+Json whole_json(const AnyResult& result, const Json& more) {
   Json object = {{"format_version", kFormatVersion}, {"created_by", "raysteer " RAYSTEER_VERSION}};
   object.update(summary_json(result));
+  object.update(more);
   AnyResult copy = result;  // the member lists serve reading too, so they want a changeable value
   object["detail"] = std::visit([](auto& known) { return Writer::write(known); }, copy);
   return object;
 }
 
+}  // namespace
+
+Json result_json(const AnyResult& result) { return whole_json(result, Json::object()); }
+
 Status write_result(const std::filesystem::path& folder, const AnyResult& result) {
-  const std::string text = result_json(result).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return write_result(folder, result, Json::object());
+}
+
+Status write_result(const std::filesystem::path& folder, const AnyResult& result, const Json& more) {
+  const std::string text = whole_json(result, more).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
   RAYSTEER_TRY(exchange::write_file(folder / "result.json", text));
   return exchange::write_file(folder / "report.html", page(result, folder));
 }
@@ -400,7 +328,13 @@ Result<AnyResult> read_result(const std::filesystem::path& folder) {
       reader("detail", result);
       return AnyResult(std::move(result));
     }
-    return fail(RCode::kNothingToReport, path.string() + ": its kind is '" + kind + "', not calibration or scan");
+    if (kind == "rig" || kind == "tables" || kind == "verification") {
+      RigResult result;
+      reader("detail", result);
+      return AnyResult(std::move(result));
+    }
+    return fail(RCode::kNothingToReport, path.string() + ": its kind is '" + kind +
+                                             "', expected calibration, scan, rig, tables or verification");
   } catch (const std::exception& error) {
     return fail(RCode::kBadValue, path.string() + ": " + error.what());
   }

@@ -4,48 +4,16 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "hal/base/result.hpp"
+#include "host/report/parts.hpp"
+#include "host/report/rig_result.hpp"
 
 namespace raysteer::host::report {
-
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-/// A value per equal cell of a device's image, row by row from the top left. NaN: nothing known there.
-struct Grid {
-  int columns = 0;
-  int rows = 0;
-  std::vector<double> values;
-  bool empty() const { return values.empty(); }
-  double at(int column, int row) const { return values[static_cast<std::size_t>(row * columns + column)]; }
-};
-
-/// The first sentence of every report, and why.
-struct Judgement {
-  std::string verdict;               ///< "good", "usable", "redo"
-  std::string summary;               ///< one sentence in plain words
-  std::vector<std::string> reasons;  ///< why not better, each a sentence
-  std::vector<std::string> advice;   ///< what to add or change, each a sentence
-};
-
-/// One corner: where it was seen and by how much the model misses it, px of the device.
-struct ResidualVector {
-  int view = 0;
-  double x = 0, y = 0, dx = 0, dy = 0;
-  bool kept = true;
-};
-
-struct ParameterRow {
-  std::string name;  ///< "left.fx"
-  double value = 0;
-  double sigma = kUnknown;
-  std::string unit;  ///< "px", "rad", "m", ""
-};
 
 struct DeviceResult {
   std::string name;
@@ -118,19 +86,6 @@ struct CalibrationResult {
   std::vector<DifferenceResult> differences;
 };
 
-/// Counts in equal bins from `low` to `high`.
-struct Histogram {
-  double low = 0;
-  double high = 0;
-  std::vector<std::int64_t> counts;
-};
-
-/// A named length of time or a count worth a line: {"left: decoded", "31.2 %"}.
-struct Fact {
-  std::string name;
-  std::string value;
-};
-
 struct ScanResult {
   Judgement judgement;
   std::string session;
@@ -159,21 +114,27 @@ struct ScanResult {
   std::vector<Fact> facts;    ///< further lines for the table
 };
 
-using AnyResult = std::variant<CalibrationResult, ScanResult>;
+using AnyResult = std::variant<CalibrationResult, ScanResult, RigResult>;
 
 /// What --json prints: the keys scripts rely on, without maps and residuals. Keys that are not known are left out.
 /// Calibration: verdict, summary, reasons, advice, rms_px, cameras[] {name, rms_px, ...}, stereo {rms_px, baseline_m}
 /// when there are two cameras, projector {focal_px, ...} and leave_one_out_px when there is one,
 /// cross_validation {rms_px, median_px, p95_px}. Scan: points, matched_projector_pixels, epipolar {sigma_px,
-/// within_cell_px, systematic_px}, flatness {patch_rms_m}, decoded_fraction, pose_moved_rad.
+/// within_cell_px, systematic_px}, flatness {patch_rms_m}, decoded_fraction, pose_moved_rad. A steered rig: what its
+/// commands print comes from them; here are the judgement, reach, stations and the difference to the calibration
+/// before.
 nlohmann::ordered_json summary_json(const AnyResult& result);
+
+/// A rig's difference to an earlier calibration, as the summary has it.
+nlohmann::ordered_json difference_json(const RigDifferenceResult& difference);
 
 /// The whole file: the summary's keys and `detail`.
 nlohmann::ordered_json result_json(const AnyResult& result);
 
-/// Writes `folder`/result.json and `folder`/report.html. A scan's picture must be there already.
-/// Errors: kDiskFull, kWriteFailed.
+/// Writes `folder`/result.json and `folder`/report.html. A scan's picture must be there already. `more`: an object
+/// whose keys stand beside the summary's and win. Errors: kDiskFull, kWriteFailed.
 Status write_result(const std::filesystem::path& folder, const AnyResult& result);
+Status write_result(const std::filesystem::path& folder, const AnyResult& result, const nlohmann::ordered_json& more);
 
 /// Reads `folder`/result.json. Errors: kNothingToReport, kBadValue, kFormatVersion.
 Result<AnyResult> read_result(const std::filesystem::path& folder);

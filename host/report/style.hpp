@@ -31,13 +31,18 @@ svg text { font-family: inherit; } svg .cell { font-size: 9.5px; } svg .unit { f
 svg .axis { stroke: var(--soft); } svg .grid { stroke: var(--line); } svg .frame { fill: none; stroke: var(--soft); }
 svg .zero { stroke: var(--ink); stroke-dasharray: 3 3; }
 svg .arrow { fill: none; stroke: #0b4f8a; stroke-width: 0.8; } svg .dropped { fill: none; stroke: #d02c1f; stroke-width: 1; }
+svg .ring { fill: #fff; stroke: #20303c; stroke-width: 1.4; } svg .cross { fill: none; stroke: #1a7f45; stroke-width: 2; }
+svg .under { stroke: #fff; stroke-width: 4; }
+svg .station { fill: none; stroke: #20303c; stroke-width: 1.3; } svg .bad { stroke: #b3261e; stroke-width: 2; }
+svg .vector { fill: none; stroke: #d55e00; stroke-width: 1.4; }
+svg .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; stroke-linejoin: round; }
 svg .measure { stroke-width: 2; }
 img { max-width: 100%; display: block; border: 1px solid var(--line); border-radius: 4px; }
-table { border-collapse: collapse; font-size: 0.88rem; font-variant-numeric: tabular-nums; }
+figcaption + table, figure + table { margin-top: 0.7rem; } table { border-collapse: collapse; font-size: 0.88rem; font-variant-numeric: tabular-nums; }
 th { text-align: left; font-weight: 600; color: var(--soft); border-bottom: 1px solid var(--soft); }
 th, td { padding: 0.18rem 1.4rem 0.18rem 0; vertical-align: top; } td { border-bottom: 1px solid var(--line); }
 td.n, th.n { text-align: right; } tr.unused td { color: var(--soft); } tr.unused td.why { color: var(--redo); }
-tr.chosen td { font-weight: 600; }
+tr.chosen td { font-weight: 600; } td.bad { color: var(--redo); font-weight: 600; }
 .columns { display: grid; grid-template-columns: repeat(auto-fit, minmax(19rem, 1fr)); gap: 0 2.5rem; align-items: start; }
 footer { margin-top: 3rem; padding-top: 0.8rem; border-top: 1px solid var(--line); color: var(--soft); font-size: 0.82rem; }
 @media print { body { padding: 0; max-width: none; font-size: 10pt; } h2 { break-after: avoid; }

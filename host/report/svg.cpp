@@ -38,6 +38,11 @@ void Svg::circle(double x, double y, double radius, std::string_view fill) {
   text_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"{}\"/>\n", x, y, radius, fill);
 }
 
+void Svg::filled_path(std::string_view d, std::string_view fill, std::string_view title) {
+  text_ += fmt::format("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"0.5\"", d, fill, fill);
+  text_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></path>\n", escape(title));
+}
+
 void Svg::path(std::string_view d, std::string_view style_class) {
   if (!d.empty()) {
     text_ += fmt::format("<path d=\"{}\"{}/>\n", d, attribute("class", style_class));

@@ -16,6 +16,7 @@ class Svg {
   void rect(double x, double y, double width, double height, std::string_view fill, std::string_view title = {});
   void line(double x1, double y1, double x2, double y2, std::string_view style_class);
   void circle(double x, double y, double radius, std::string_view fill);
+  void filled_path(std::string_view d, std::string_view fill, std::string_view title = {});
   /// `d` as SVG's path data.
   void path(std::string_view d, std::string_view style_class);
   void text(double x, double y, std::string_view words, Anchor anchor = Anchor::kStart,

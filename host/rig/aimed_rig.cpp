@@ -6,7 +6,7 @@
 
 namespace raysteer::host::rig {
 
-Result<AimedRig> read_aimed_rig(const std::string& rig, const std::string& stations) {
+Result<AimedRig> read_aimed_rig(const std::string& rig, const std::string& stations, const std::string& surface) {
   auto calibration = exchange::read_rig(rig);
   RAYSTEER_TRY(calibration);
   auto room = calibration->in_room();
@@ -16,9 +16,15 @@ Result<AimedRig> read_aimed_rig(const std::string& rig, const std::string& stati
   }
   auto wanted = read_stations(stations);
   RAYSTEER_TRY(wanted);
-  auto aimed = aim_stations(*room, *wanted);
+  std::optional<Scene> scene;
+  if (!surface.empty()) {
+    auto read = read_scene(surface, calibration->id);
+    RAYSTEER_TRY(read);
+    scene = *std::move(read);
+  }
+  auto aimed = aim_stations(*room, *wanted, scene ? &*scene : nullptr);
   RAYSTEER_TRY(aimed);
-  return AimedRig{*std::move(calibration), *std::move(room), *std::move(wanted), *std::move(aimed)};
+  return AimedRig{*std::move(calibration), *std::move(room), *std::move(wanted), std::move(scene), *std::move(aimed)};
 }
 
 }  // namespace raysteer::host::rig

@@ -76,10 +76,12 @@ std::optional<Eigen::Vector2d> feedback(const Session& session, const std::strin
   return count > 0 ? std::optional<Eigen::Vector2d>(sum / count) : std::nullopt;
 }
 
-Result<calib::model::Rig> cameras_in_order(const Session& session, const calib::model::Rig& cameras) {
+}  // namespace
+
+Status check_cameras(const Session& session, const calib::model::Rig& cameras) {
   if (session.cameras() != 2) {
-    return fail(RCode::kCameraCount, "the session has " + std::to_string(session.cameras()) +
-                                         " cameras; calibrating a steered rig takes two");
+    return fail(RCode::kCameraCount,
+                "the session has " + std::to_string(session.cameras()) + " cameras; a steered rig takes two");
   }
   const auto devices = scan::scan_devices(session, cameras);
   if (!devices) {
@@ -90,19 +92,14 @@ Result<calib::model::Rig> cameras_in_order(const Session& session, const calib::
                 "expected a calibration of the session's two cameras alone, in their order; make one with "
                 "'raysteer calibrate cameras'");
   }
-  return cameras;
+  return ok();
 }
-
-}  // namespace
 
 Result<Gathered> gather(const Session& session, const calib::model::Rig& cameras, const GatherOptions& options,
                         const Tick& tick) {
-  auto ordered = cameras_in_order(session, cameras);
-  if (!ordered) {
-    return std::move(ordered).error();
-  }
+  RAYSTEER_TRY(check_cameras(session, cameras));
   Gathered gathered;
-  gathered.observations.cameras = *std::move(ordered);
+  gathered.observations.cameras = cameras;
   std::vector<int> numbers;
   for (int look = 0; look < session.looks(); ++look) {
     const auto& named = session.manifest().looks[static_cast<std::size_t>(look)];

@@ -33,6 +33,9 @@ struct GatherOptions {
   std::vector<std::string> looks;  ///< by name, in this order; empty: all
 };
 
+/// Are these the session's two cameras, in its order? Errors: kCameraCount, kCalibrationMismatch.
+Status check_cameras(const session::Session& session, const calib::model::Rig& cameras);
+
 /// `cameras`: calibrated, two devices named as the session's cameras are. Errors: kCameraCount, kCalibrationMismatch,
 /// kCommandMissing, kBadSequence (one axis is missing), kTooFewLooks (nothing decoded), kCancelled; a look that cannot
 /// be decoded is only missed.

@@ -73,4 +73,20 @@ Result<TruthError> truth_error(const calib::steer::Solution& solution, const pre
                     .points = pixels.size()};
 }
 
+std::array<Eigen::Vector3d, 4> lit_corners(const AimedStation& station, const pretend::TruthFile& truth,
+                                           const std::optional<Eigen::Vector2d>& angles_rad) {
+  const Eigen::Vector2d angles = angles_rad.value_or(truth.projector->angles(*station.station.command_rad));
+  const calib::model::VirtualProjector view = truth.projector->at_angles(angles);
+  const Eigen::Vector3d eye = *truth.T_room_rig * view.centre();
+  std::array<Eigen::Vector3d, 4> lit;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto ray = view.ray(station.panel[k]);
+    const Eigen::Vector3d direction = truth.T_room_rig->q * ray.value_or(Eigen::Vector3d::Zero());
+    const Eigen::Vector3d& corner = station.corners_room[k];
+    // A pixel without a ray gives infinity: nothing lights the corner.
+    lit[k] = eye + station.normals_room[k].dot(corner - eye) / station.normals_room[k].dot(direction) * direction;
+  }
+  return lit;
+}
+
 }  // namespace raysteer::host::rig

@@ -218,17 +218,7 @@ void read_cameras(TomlTable& root, Board& board) {
   }
 }
 
-}  // namespace
-
-Result<Board> read_board(std::string_view text, const std::string& file) {
-  Result<toml::table> parsed = document::parse(text, file);
-  if (!parsed) {
-    return std::move(parsed).error();
-  }
-  Faults faults;
-  TomlTable root({&*parsed}, "", faults);
-  root.integer("format", {1, 1});
-  Board board;
+void read(TomlTable& root, Board& board, Faults& faults) {
   board.name = root.text("name");
   board.back_end = root.text("back_end");
   if (auto table = needed(root, "projector")) {
@@ -249,9 +239,12 @@ Result<Board> read_board(std::string_view text, const std::string& file) {
       root.fault(RCode::kBadValue, "faults", fault.error().note);
     }
   }
-  root.finish();
-  RAYSTEER_TRY(faults.status());
-  return board;
+}
+
+}  // namespace
+
+Result<Board> read_board(std::string_view text, const std::string& file) {
+  return document::read_document<Board>(text, file, read);
 }
 
 }  // namespace raysteer::proto::board

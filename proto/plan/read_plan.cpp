@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "proto/document/parse.hpp"
+#include "proto/document/paths.hpp"
 #include "proto/document/pattern_table.hpp"
 #include "proto/document/target_table.hpp"
 #include "proto/plan/plan.hpp"
@@ -17,21 +18,12 @@ namespace {
 // Bounds that only nonsense exceeds; they keep memory and time small whatever the file says.
 constexpr std::size_t kMostLooks = 10'000;
 constexpr std::size_t kMostBlocks = 256;
-constexpr std::size_t kLongestName = 64;
-
-// Names become names of files.
-bool is_name(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName && name != "." && name != ".." &&
-         std::ranges::all_of(name, [](char c) {
-           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
-                  c == '-';
-         });
-}
 
 PlannedLook read_look(TomlTable& table) {
   constexpr double kMost = 3200;
   PlannedLook look{.name = table.text("name"), .mirror_rad = {}, .prepare = table.text("prepare", "")};
-  if (!is_name(look.name)) {
+  // Names become names of files.
+  if (!document::is_file_name(look.name)) {
     table.fault(RCode::kBadValue, "name", "is '" + look.name + "', which cannot be part of a file name");
   }
   const bool given = table.has("mirror_mrad");
@@ -73,17 +65,7 @@ void read_looks(TomlTable& root, Plan& plan) {
   }
 }
 
-}  // namespace
-
-Result<Plan> read_plan(std::string_view text, const std::string& file) {
-  Result<toml::table> parsed = document::parse(text, file);
-  if (!parsed) {
-    return std::move(parsed).error();
-  }
-  Faults faults;
-  TomlTable root({&*parsed}, "", faults);
-  root.integer("format", {1, 1});
-  Plan plan;
+void read(TomlTable& root, Plan& plan, Faults& faults) {
   plan.name = root.text("name");
   if (root.has("exposure_us")) {
     plan.exposure_us = root.number("exposure_us", {1, 1e8}, {}, "exposures are in microseconds");
@@ -107,9 +89,12 @@ Result<Plan> read_plan(std::string_view text, const std::string& file) {
     table.finish();
     plan.targets.push_back(std::move(target));
   }
-  root.finish();
-  RAYSTEER_TRY(faults.status());
-  return plan;
+}
+
+}  // namespace
+
+Result<Plan> read_plan(std::string_view text, const std::string& file) {
+  return document::read_document<Plan>(text, file, read);
 }
 
 }  // namespace raysteer::proto::plan

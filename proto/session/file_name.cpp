@@ -85,26 +85,6 @@ std::string fill_template(std::string_view text, std::string_view camera, std::s
   return name;
 }
 
-std::optional<std::string> leaves_folder(std::string_view path) {
-  if (path.starts_with('/')) {
-    return "is absolute";
-  }
-  if (path.find('\0') != std::string_view::npos) {
-    return "holds a zero byte";
-  }
-  if (path.find('\\') != std::string_view::npos) {
-    return "holds a backslash; write '/' between folders";
-  }
-  for (std::size_t begin = 0; begin <= path.size();) {
-    const std::size_t end = std::min(path.find('/', begin), path.size());
-    if (path.substr(begin, end - begin) == "..") {
-      return "goes up with '..'";
-    }
-    begin = end + 1;
-  }
-  return std::nullopt;
-}
-
 std::string file_name(const Manifest& manifest, const Camera& camera, const Look& look, int index) {
   const std::string folder = manifest.frames.empty() ? "" : manifest.frames + "/";
   return folder + fill_template(camera.files, camera.name, look.name, camera.first_index + index);

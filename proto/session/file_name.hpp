@@ -1,7 +1,6 @@
 // value: file-name templates: "left/{look}_{index:02}.png".
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,9 +19,5 @@ Result<TemplateUse> check_template(std::string_view text);
 
 /// Fills a template that check_template() accepts.
 std::string fill_template(std::string_view text, std::string_view camera, std::string_view look, int index);
-
-/// Why `path` may leave the folder it starts in ("is absolute", "goes up with '..'"), if it may. Symbolic links are
-/// the reader's care.
-std::optional<std::string> leaves_folder(std::string_view path);
 
 }  // namespace raysteer::proto::session

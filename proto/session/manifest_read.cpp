@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "proto/document/parse.hpp"
+#include "proto/document/paths.hpp"
 #include "proto/document/pattern_table.hpp"
 #include "proto/document/target_table.hpp"
 #include "proto/document/toml_table.hpp"
@@ -78,7 +79,7 @@ Status read_layers(std::string_view text, const std::string& shown, const std::s
   layers.tables.push_back(std::move(table));
   layers.open.push_back(path);
   for (const std::string& include : includes) {
-    if (const auto why = leaves_folder(include)) {
+    if (const auto why = document::leaves_folder(include)) {
       return fail(RCode::kPathOutside, include_line + ": include '" + include + "' " + *why);
     }
     const std::string included = tidy_path(folder_of(path) + include);
@@ -107,7 +108,8 @@ int to_int(std::int64_t value) { return static_cast<int>(value); }
 
 // Names become parts of file names.
 std::string read_name(TomlTable& table, std::string_view key, const std::string& value) {
-  if (value.empty() || value == "." || value == ".." || value.find('/') != std::string::npos || leaves_folder(value)) {
+  if (value.empty() || value == "." || value == ".." || value.find('/') != std::string::npos ||
+      document::leaves_folder(value)) {
     table.fault(RCode::kBadValue, key, "is '" + value + "', which cannot be part of a file name");
   }
   return value;
@@ -158,7 +160,7 @@ Camera read_camera(TomlTable& table) {
     table.fault(RCode::kBadValue, "bits", "must be 8 or 16, got " + std::to_string(camera.bits));
     camera.bits = 8;
   }
-  if (const auto why = leaves_folder(camera.files)) {
+  if (const auto why = document::leaves_folder(camera.files)) {
     table.fault(RCode::kPathOutside, "files", "is '" + camera.files + "', which " + *why);
   }
   table.finish();
@@ -283,7 +285,7 @@ Result<Manifest> read_manifest(std::string_view text, const std::string& file, c
   manifest.rig = root.text("rig", "");
   manifest.note = root.text("note", "");
   manifest.frames = tidy_path(root.text("frames", ""));
-  if (const auto why = leaves_folder(root.text("frames", ""))) {
+  if (const auto why = document::leaves_folder(root.text("frames", ""))) {
     root.fault(RCode::kPathOutside, "frames", "is '" + root.text("frames", "") + "', which " + *why);
   }
   if (root.has("exposure_us")) {

@@ -7,6 +7,7 @@
 
 #include "proto/document/fixed_numbers.hpp"
 #include "proto/document/parse.hpp"
+#include "proto/document/paths.hpp"
 #include "proto/document/toml_text.hpp"
 #include "proto/stations/polygon.hpp"
 
@@ -20,34 +21,9 @@ namespace {
 constexpr std::size_t kMostStations = 10'000;
 constexpr std::size_t kMostZones = 1000;
 constexpr std::size_t kMostCorners = 1000;
-constexpr std::size_t kLongestName = 64;
 constexpr document::Range<double> kPlace{-1000, 1000};
 constexpr std::string_view kMetres = "lengths are in metres (25 mm is 0.025)";
 constexpr Vec3 kUnturned{};
-
-// Names become names of files.
-bool is_name(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName && name != "." && name != ".." &&
-         std::ranges::all_of(name, [](char c) {
-           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
-                  c == '-';
-         });
-}
-
-// Beside the file or below, as a session's frames are.
-bool is_outside(std::string_view path) {
-  if (path.starts_with('/') || path.find('\\') != std::string_view::npos || path.find(':') != std::string_view::npos) {
-    return true;
-  }
-  while (!path.empty()) {
-    const std::size_t end = std::min(path.find('/'), path.size());
-    if (path.substr(0, end) == "..") {
-      return true;
-    }
-    path.remove_prefix(std::min(end + 1, path.size()));
-  }
-  return false;
-}
 
 Vec3 read_rotation(TomlTable& table) {
   if (!table.has("turn_deg")) {
@@ -64,7 +40,8 @@ Vec3 read_rotation(TomlTable& table) {
 Station read_station(TomlTable& table) {
   Station station;
   station.name = table.text("name");
-  if (!is_name(station.name) && table.has("name")) {
+  // Names become names of files.
+  if (!document::is_file_name(station.name) && table.has("name")) {
     table.fault(RCode::kBadValue, "name", "is '" + station.name + "', which cannot be part of a file name");
   }
   station.position_m = document::read_numbers<3>(table, "position_m", kPlace, nullptr, kMetres);
@@ -72,7 +49,8 @@ Station read_station(TomlTable& table) {
   station.size_m = document::read_numbers<2>(table, "size_m", {1e-3, 100}, nullptr, kMetres);
   station.surface = table.choice("surface", {"plane", "scan"}, 0) == 0 ? Surface::kPlane : Surface::kScan;
   station.content = table.text("content", "");
-  if (is_outside(station.content)) {
+  // Beside the file or below, as a session's frames are; and no drive of Windows'.
+  if (document::leaves_folder(station.content) || station.content.find(':') != std::string::npos) {
     table.fault(RCode::kPathOutside, "content", "is '" + station.content + "'; pictures lie beside this file or below");
   }
   station.tolerance_mm = table.number("tolerance_mm", {1e-3, 1e4}, {}, "in millimetres");
@@ -113,29 +91,7 @@ KeepOut read_keep_out(TomlTable& table) {
   return zone;
 }
 
-}  // namespace
-
-Result<const Station*> Stations::find(std::string_view station) const {
-  const auto found = std::ranges::find(stations, station, &Station::name);
-  if (found != stations.end()) {
-    return &*found;
-  }
-  std::string known;
-  for (const Station& each : stations) {
-    known += ' ' + each.name;
-  }
-  return fail(RCode::kStationUnknown, "'" + std::string(station) + "'; there are" + known);
-}
-
-Result<Stations> read_stations(std::string_view text, const std::string& file) {
-  Result<toml::table> parsed = document::parse(text, file);
-  if (!parsed) {
-    return std::move(parsed).error();
-  }
-  Faults faults;
-  TomlTable root({&*parsed}, "", faults);
-  root.integer("format", {1, 1});
-  Stations stations;
+void read(TomlTable& root, Stations& stations, Faults&) {
   stations.name = root.text("name");
   std::vector<TomlTable> tables = root.tables("station");
   if (!root.has("station")) {
@@ -159,9 +115,24 @@ Result<Stations> read_stations(std::string_view text, const std::string& file) {
   for (TomlTable& table : zones) {
     stations.keep_out.push_back(read_keep_out(table));
   }
-  root.finish();
-  RAYSTEER_TRY(faults.status());
-  return stations;
+}
+
+}  // namespace
+
+Result<const Station*> Stations::find(std::string_view station) const {
+  const auto found = std::ranges::find(stations, station, &Station::name);
+  if (found != stations.end()) {
+    return &*found;
+  }
+  std::string known;
+  for (const Station& each : stations) {
+    known += ' ' + each.name;
+  }
+  return fail(RCode::kStationUnknown, "'" + std::string(station) + "'; there are" + known);
+}
+
+Result<Stations> read_stations(std::string_view text, const std::string& file) {
+  return document::read_document<Stations>(text, file, read);
 }
 
 std::string write_stations(const Stations& stations) {

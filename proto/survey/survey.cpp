@@ -56,17 +56,7 @@ KnownLength read_length(TomlTable& table) {
   return known;
 }
 
-}  // namespace
-
-Result<Survey> read_survey(std::string_view text, const std::string& file) {
-  Result<toml::table> parsed = document::parse(text, file);
-  if (!parsed) {
-    return std::move(parsed).error();
-  }
-  Faults faults;
-  TomlTable root({&*parsed}, "", faults);
-  root.integer("format", {1, 1});
-  Survey survey;
+void read(TomlTable& root, Survey& survey, Faults&) {
   survey.name = root.text("name");
   survey.by_rig = root.choice("measured_by", {"hand", "rig"}, 0) == 1;
   if (!root.has("datum")) {
@@ -86,9 +76,14 @@ Result<Survey> read_survey(std::string_view text, const std::string& file) {
     }
     survey.lengths.push_back(read_length(table));
   }
-  root.finish();
-  RAYSTEER_TRY(faults.status());
-  if (Status usable = check(survey); !usable) {
+}
+
+}  // namespace
+
+Result<Survey> read_survey(std::string_view text, const std::string& file) {
+  Result<Survey> survey = document::read_document<Survey>(text, file, read);
+  RAYSTEER_TRY(survey);
+  if (Status usable = check(*survey); !usable) {
     return with_context(std::move(usable).error(), file + ": ");
   }
   return survey;

@@ -103,7 +103,15 @@ Result<Json> capture(const CaptureRequest& request, Say& say) {
   firmware::capture::Options options;
   options.rig = loaded->board.name + " seed " + std::to_string(request.which.seed);
   options.settle_timeout = settle_timeout(loaded->board);
+  std::vector<rig::LookTruth> looks;
   rig::RunOptions run{.paced = request.paced, .progress = [&](const firmware::capture::Progress& progress) {
+                        // Some of a look's shots are taken: the mirror stands.
+                        const auto look = static_cast<std::size_t>(progress.looks_done);
+                        if (look == looks.size() && look < plan->looks.size() &&
+                            progress.shots_done > progress.looks_done * sequence->frames()) {
+                          const hal::MirrorAngles angles = rig.mock().mirror().true_angles(rig.now());
+                          looks.push_back({plan->looks[look].name, {angles.axis1.raw(), angles.axis2.raw()}});
+                        }
                         const int total = std::max(progress.shots_total, 1);
                         say.progress(progress.shots_done == 0 ? "measuring light and latency" : "capturing",
                                      static_cast<double>(progress.shots_done) / total);
@@ -113,6 +121,7 @@ Result<Json> capture(const CaptureRequest& request, Say& say) {
   if (!findings) {
     return findings.error();
   }
+  RAYSTEER_TRY(write_whole(request.out / "truth.json", rig::truth_json(rig.truth(), rig.world().scene(), looks)));
   Json json{{"board", loaded->board.name},
             {"scene", loaded->scene},
             {"seed", request.which.seed},

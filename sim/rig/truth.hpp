@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "hal/base/result.hpp"
@@ -25,8 +26,15 @@ struct Truth {
 /// stands. Errors: those of optics::rig_as_drawn().
 Result<Truth> draw_truth(const proto::board::Board& board, std::uint64_t seed);
 
-/// truth.json (docs/truth-format.md): every parameter, and the surfaces at rig
-/// time 0 in the rig's frame.
-std::string truth_json(const Truth& truth, const scene::Scene& scene);
+/// Where the mirror stood while a look's patterns were shown: mechanical angles,
+/// radians, with repeatability, drift and bumps.
+struct LookTruth {
+  std::string name;
+  std::array<double, 2> mirror_rad{};
+};
+
+/// truth.json (docs/truth-format.md): every parameter, the surfaces at rig time
+/// 0 in the rig's frame, and looks that were taken.
+std::string truth_json(const Truth& truth, const scene::Scene& scene, std::span<const LookTruth> looks = {});
 
 }  // namespace raysteer::sim::rig

@@ -93,7 +93,7 @@ void add_surfaces(Json& json, const scene::Scene& scene) {
 
 }  // namespace
 
-std::string truth_json(const Truth& truth, const scene::Scene& scene) {
+std::string truth_json(const Truth& truth, const scene::Scene& scene, std::span<const LookTruth> looks) {
   Json json{{"format", 1}, {"seed", truth.seed}, {"devices", Json::array()}};
   for (const optics::TrueCamera& camera : truth.rig.cameras) {
     json["devices"].push_back(
@@ -110,6 +110,9 @@ std::string truth_json(const Truth& truth, const scene::Scene& scene) {
   json["mirror"] = mirror(truth);
   json["T_room_rig"] = json_of(scene.T_room_rig);
   add_surfaces(json, scene);
+  for (const LookTruth& look : looks) {
+    json["looks"].push_back({{"name", look.name}, {"mirror_rad", look.mirror_rad}});
+  }
   return json.dump(1) + "\n";
 }
 

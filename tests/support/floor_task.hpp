@@ -42,7 +42,8 @@ struct FloorTask {
 
 /// The rig tied to the room by datums on the floor. The true room's frame is the true rig's, and the fit starts a
 /// little off it.
-inline std::optional<calib::steer::InRoom> tied_to_room(const SteerTrial& trial, const FloorTask& task, Noise& noise) {
+inline std::optional<calib::steer::InRoom> tied_to_room(const IdealRig& rig, const calib::steer::Solution& solution,
+                                                        const FloorTask& task, Noise& noise) {
   std::vector<calib::steer::RoomPoint> seen;
   for (int k = 0; k < task.datum_columns * task.datum_rows; ++k) {
     const double x = -2.2 + 4.8 * (k % task.datum_columns) / (task.datum_columns - 1.0);
@@ -53,7 +54,7 @@ inline std::optional<calib::steer::InRoom> tied_to_room(const SteerTrial& trial,
     const Eigen::Vector3d stands = datum.p_room + task.survey_m * Eigen::Vector3d(noise.normal(), noise.normal(), 0);
     bool inside = true;
     for (std::size_t eye = 0; eye < 2; ++eye) {
-      const auto& camera = trial.rig().truth.rig.cameras[eye];
+      const auto& camera = rig.truth.rig.cameras[eye];
       const auto q = camera.project(stands);
       inside = inside && q && q->minCoeff() > 30 && q->x() < camera.width - 31 && q->y() < camera.height - 31;
       datum.q[eye] = q.value_or(Eigen::Vector2d::Zero()) + ideal::normals(noise, task.datum_noise_px);
@@ -64,8 +65,12 @@ inline std::optional<calib::steer::InRoom> tied_to_room(const SteerTrial& trial,
     }
   }
   const calib::model::Pose start{calib::model::rotation_by({0.002, -0.003, 0.001}), {0.004, 0.003, -0.005}};
-  auto tied = calib::steer::tie_to_room(*trial.solution(), seen, start);
+  auto tied = calib::steer::tie_to_room(solution, seen, start);
   return tied ? std::optional(*std::move(tied)) : std::nullopt;
+}
+
+inline std::optional<calib::steer::InRoom> tied_to_room(const SteerTrial& trial, const FloorTask& task, Noise& noise) {
+  return tied_to_room(trial.rig(), *trial.solution(), task, noise);
 }
 
 /// The allowed command that brings p to the picture's middle, or as near as it goes.

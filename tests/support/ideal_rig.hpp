@@ -14,6 +14,7 @@
 #include "calib/steer/drawing.hpp"
 #include "calib/steer/observations.hpp"
 #include "hal/base/noise.hpp"
+#include "host/rig/drawing.hpp"
 #include "proto/board/board.hpp"
 #include "sim/optics/light_path.hpp"
 #include "sim/rig/truth.hpp"
@@ -40,57 +41,9 @@ struct CameraErrors {
 
 inline constexpr double kFloorDepth = 3.5;  ///< metres below the left camera, across its axis
 
-/// The board file's drawing as a solve starts from it.
+/// The board file's drawing as a solve starts from it; the boards of tests can be drawn.
 inline calib::steer::Drawing drawing_of(const proto::board::Board& board) {
-  using Eigen::Vector3d;
-  const auto vector = [](const proto::board::Vec3& v) { return Vector3d(v[0], v[1], v[2]); };
-  calib::steer::Drawing drawing;
-  calib::model::SteeredProjector& p = drawing.projector;
-  const proto::board::Lens& lens = board.projector.lens;
-  p.lens = {.width = board.projector.width,
-            .height = board.projector.height,
-            .fx = lens.focal_px,
-            .fy = lens.focal_px,
-            .cx = lens.centre_px[0],
-            .cy = lens.centre_px[1]};
-  std::ranges::copy(lens.distortion, p.lens.k.begin());
-  p.T_projector_rig.q = calib::model::rotation_by(vector(board.projector.T_projector_rig.rotation));
-  p.T_projector_rig.t = vector(board.projector.T_projector_rig.translation);
-  p.kind = board.mirror.kind == proto::board::MirrorKind::kHead ? calib::model::MirrorKind::kHead
-                                                                : calib::model::MirrorKind::kGalvoPair;
-  for (std::size_t k = 0; k < board.mirror.planes.size(); ++k) {
-    const proto::board::MirrorPlane& drawn = board.mirror.planes[k];
-    p.parts[k] = {.axis = vector(drawn.axis).normalized(),
-                  .point = vector(drawn.point),
-                  .normal = vector(drawn.normal).normalized(),
-                  .offset_m = drawn.offset_m,
-                  .size_m = {drawn.size_m[0], drawn.size_m[1]},
-                  .ellipse = drawn.ellipse};
-  }
-  if (p.kind == calib::model::MirrorKind::kHead) {
-    p.outer_axis = vector(board.mirror.outer_axis).normalized();
-    p.outer_point = vector(board.mirror.outer_point);
-  }
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    p.curves[axis].half_range = board.mirror.half_range_rad[axis];
-    p.least_rad[static_cast<int>(axis)] = board.mirror.least_rad[axis];
-    p.most_rad[static_cast<int>(axis)] = board.mirror.most_rad[axis];
-  }
-  const proto::board::Tolerance& t = board.tolerance;
-  calib::steer::Tolerance& tolerance = drawing.tolerance;
-  tolerance.axis_rad = t.axis_rad;
-  tolerance.position_m = t.position_m;
-  tolerance.zero_rad = t.zero_rad;
-  tolerance.gain = t.gain;
-  tolerance.quadratic = t.quadratic;
-  tolerance.cubic = t.cubic;
-  tolerance.cross_talk = t.cross_talk;
-  tolerance.focal = t.focal;
-  tolerance.centre = t.centre;
-  tolerance.distortion = t.distortion;
-  tolerance.mount_rad = t.mount_rad;
-  tolerance.mount_m = t.mount_m;
-  return drawing;
+  return host::rig::drawing_of(board).value();
 }
 
 struct IdealRig {

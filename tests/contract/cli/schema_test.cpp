@@ -81,6 +81,8 @@ TEST(Schema, fits_errors_explain_and_target_print) {
   EXPECT_EQ(fault_of("target-print",
                      raysteer({"target", "print", "--columns", "8", "--rows", "5", "--square-mm", "22", "--json"}).out),
             "");
+  EXPECT_EQ(
+      fault_of("target-print", raysteer({"target", "print", "--kind", "datum", "--radius-mm", "5", "--json"}).out), "");
 }
 
 TEST(Schema, fits_results) {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "calib/target/datum.hpp"
 #include "calib/target/detect.hpp"
+#include "hal/base/datum_code.hpp"
 #include "host/session/image_codec.hpp"
 #include "tests/contract/cli/program.hpp"
 
@@ -186,6 +188,69 @@ TEST(TargetPrint, refuses_more_markers_than_the_dictionary_has) {
                                   "--square-mm", "10", "--dictionary", "4X4_50"});
   EXPECT_EQ(done.exit_code, 1);
   EXPECT_NE(done.err.find("needs 63 markers, 4X4_50 has 50"), std::string::npos) << done.err;
+}
+
+// All codes on one sheet, as the detector reads them from what other programs draw.
+void expect_all_datums(const std::string& image, double radius_mm) {
+  const std::string bytes = support::read_all(image);
+  Image<std::uint8_t> frame;
+  const Status decoded =
+      session::decode_image({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, frame);
+  ASSERT_TRUE(decoded) << decoded.error().message();
+  const calib::target::DatumsInFrame found = calib::target::detect_datums(softened(frame).view());
+  EXPECT_TRUE(found.doubled.empty());
+  ASSERT_EQ(found.seen.size(), datum_codes().size());
+  double pitch_mm = 0;
+  for (std::size_t k = 0; k < found.seen.size(); ++k) {
+    EXPECT_EQ(found.seen[k].code, datum_codes()[k]);
+    EXPECT_NEAR(found.seen[k].radius_px() * 25.4 / kDpi, radius_mm, 0.01 * radius_mm + 0.05);
+    EXPECT_GT(found.seen[k].margin, 0.5);
+    if (k == 1) {
+      pitch_mm = (found.seen[1].q - found.seen[0].q).norm() * 25.4 / kDpi;
+    }
+  }
+  EXPECT_NEAR(pitch_mm, 7 * radius_mm + 4, 0.1) << "side by side, 4 mm between";
+}
+
+TEST(DatumPrint, pdf_and_svg_show_all_sixteen_at_their_size) {
+  const ScratchFolder folder;
+  for (const std::string& kind : {std::string("pdf"), std::string("svg")}) {
+    const std::string file = (folder / ("t." + kind)).string();
+    const Finished done = raysteer({"target", "print", "--kind", "datum", "--radius-mm", "5.5", "--out", file});
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_NE(done.out.find("code = 1391\nradius_m = 0.0055\n"), std::string::npos) << done.out;
+  }
+  if (support::run_program({"sh", "-c", "command -v pdftoppm && command -v rsvg-convert"}).exit_code != 0) {
+    GTEST_SKIP() << "pdftoppm or rsvg-convert is not installed";
+  }
+  const Finished pdf = support::run_program(
+      {"pdftoppm", "-r", "187", "-gray", "-singlefile", (folder / "t.pdf").string(), (folder / "p").string()});
+  ASSERT_EQ(pdf.exit_code, 0) << pdf.err;
+  EXPECT_EQ(pdf.err, "") << "the PDF has no faults";
+  expect_all_datums((folder / "p.pgm").string(), 5.5);
+  const Finished svg = support::run_program(
+      {"rsvg-convert", "-d", "187", "-p", "187", "-o", (folder / "s.png").string(), (folder / "t.svg").string()});
+  ASSERT_EQ(svg.exit_code, 0) << svg.err;
+  expect_all_datums((folder / "s.png").string(), 5.5);
+}
+
+TEST(DatumPrint, takes_the_measured_size_and_refuses_what_cannot_be) {
+  const auto print = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"target", "print", "--kind", "datum"});
+    return raysteer(more);
+  };
+  const Finished measured = print({"--code", "23", "--radius-mm", "20", "--measured-mm", "99.5"});
+  EXPECT_NE(measured.out.find("code = 23\nradius_m = 0.0199\n"), std::string::npos) << measured.out << measured.err;
+  const Finished twin = print({"--code", "24", "--radius-mm", "20"});
+  EXPECT_EQ(twin.exit_code, 1);
+  EXPECT_NE(twin.err.find("take one of"), std::string::npos) << twin.err;
+  const Finished large = print({"--code", "23", "--code", "79", "--radius-mm", "30"});
+  EXPECT_NE(large.err.find("error[R0507]"), std::string::npos) << large.err;
+  EXPECT_NE(large.err.find("--radius-mm 19"), std::string::npos) << large.err;
+  EXPECT_EQ(print({"--code", "23", "--code", "23", "--radius-mm", "9"}).exit_code, 2);
+  EXPECT_EQ(print({"--code", "one", "--radius-mm", "9"}).exit_code, 2);
+  EXPECT_EQ(print({}).exit_code, 2);
+  EXPECT_EQ(print({"--radius-mm", "9", "--columns", "3"}).exit_code, 2);
 }
 
 }  // namespace

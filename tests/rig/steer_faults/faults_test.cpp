@@ -196,6 +196,16 @@ TEST_P(Faults, a_drawing_off_by_20_mm_still_converges_or_is_said) {
   }
 }
 
+// The rig is solved all the same, and the drawing is blamed, not believed.
+TEST_P(Faults, a_drawing_that_claims_more_than_it_keeps_is_said_to_be_wrong) {
+  drawing.projector.lens.fx = 1.04 * rig.projector.lens.fx;
+  drawing.projector.lens.fy = 1.04 * rig.projector.lens.fy;
+  drawing.tolerance.focal = 0.002;
+  const Error error = refusal();
+  EXPECT_EQ(error.rcode, RCode::kDrawingsDisagree) << error.message();
+  EXPECT_NE(error.note.find("tolerances away from the board file"), std::string::npos) << error.note;
+}
+
 INSTANTIATE_TEST_SUITE_P(Boards, Faults, testing::Values("mock-galvo", "mock-head"));
 
 }  // namespace

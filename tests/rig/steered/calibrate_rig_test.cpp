@@ -68,6 +68,16 @@ TEST_P(SteeredRig, predicts_unseen_looks_and_puts_stations_where_they_belong) {
   EXPECT_LT(verified.at("max_mm"), 4 * 2.5);
   EXPECT_LT(verified.at("truth").at("mean_mm"), 4 * 0.7);
   EXPECT_LT(verified.at("truth").at("max_mm"), 4 * 2.5);
+
+  // The same looks are a scan: all that they lit as one surface.
+  const auto scan = run({"scan", in("looks"), "--rig", in("rig"), "--out", in("scan")});
+  ASSERT_TRUE(scan.is_object());
+  const auto& surface = scan.at("surface");
+  EXPECT_EQ(surface.at("looks").size(), 13U);
+  EXPECT_GT(surface.at("overlaps").size(), 10U);
+  EXPECT_LT(surface.at("overlap_median_mm"), 4 * 1.5);
+  EXPECT_LT(surface.at("overlap_p95_mm"), 4 * 5);
+  EXPECT_LT(scan.at("truth").at("surface_p95_m"), 4 * 3e-3);
 }
 
 TEST(SteeredRigInput, is_refused_with_its_own_message) {
@@ -75,6 +85,9 @@ TEST(SteeredRigInput, is_refused_with_its_own_message) {
   EXPECT_EQ(raysteer({"calibrate", "rig", "nowhere"}).exit_code, 2);
   EXPECT_EQ(raysteer({"plan", "looks", "--board", "mock-small", "--looks", "4"}).exit_code, 1);
   EXPECT_EQ(raysteer({"bake", "--rig", "nowhere", "--stations", data("stations.toml")}).exit_code, 3);
+  EXPECT_EQ(raysteer({"scan", "nowhere", "--rig", "nowhere"}).exit_code, 3);
+  EXPECT_EQ(raysteer({"scan", "nowhere", "--rig", "nowhere", "--rectified"}).exit_code, 2);
+  EXPECT_EQ(raysteer({"scan", "nowhere", "--calibration", "nowhere", "--without", "look"}).exit_code, 2);
 }
 
 }  // namespace
