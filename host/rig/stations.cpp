@@ -28,6 +28,11 @@ calib::model::Pose room_content(const proto::stations::Station& station) {
          calib::model::Pose{calib::model::rotation_by(std::numbers::pi * Eigen::Vector3d::UnitX()), {0, 0, 0}};
 }
 
+/// Names the station; what `calib/bake` refuses is named there.
+Error refused(RCode rcode, const std::string& name, const std::string& why) {
+  return fail(rcode, "station '" + name + "': " + why);
+}
+
 /// The picture as a sheet of its size that faces the eye at the station's middle, its top towards the station's.
 Result<Content> faced_content(const calib::bake::Station& station, const Vector3d& eye_rig, bool on_scan) {
   const Vector3d way = station.T_rig_plane.t - eye_rig;
@@ -35,9 +40,9 @@ Result<Content> faced_content(const calib::bake::Station& station, const Vector3
   const Vector3d down = station.T_rig_plane.q * Vector3d::UnitY();
   const Vector3d across = down - ahead * ahead.dot(down);
   if (!(way.norm() > 0.01) || !(across.norm() > 0.01)) {
-    return fail(RCode::kBadValue,
-                "expected an eye that does not look along the picture's top, nor from within 10 mm of it; "
-                "move eye_m or turn the station");
+    return refused(RCode::kBadValue, station.name,
+                   "expected an eye that does not look along the picture's top, nor from within 10 mm of it; "
+                   "move eye_m or turn the station");
   }
   Eigen::Matrix3d R_eye_rig;
   R_eye_rig.row(2) = ahead.transpose();
@@ -98,7 +103,8 @@ Status aim_looked_at(const InRoom& rig, const std::optional<Vector3d>& eye_rig, 
                      AimedStation& one) {
   one.to_scale = false;
   if (on_scan && scene == nullptr) {
-    return fail(RCode::kSurfaceMissing, "it lies on a scanned surface; name the scan with --surface");
+    return refused(RCode::kSurfaceMissing, one.station.name,
+                   "it lies on a scanned surface; name the scan with --surface");
   }
   if (eye_rig) {
     auto content = faced_content(one.station, *eye_rig, on_scan);
@@ -111,8 +117,10 @@ Status aim_looked_at(const InRoom& rig, const std::optional<Vector3d>& eye_rig, 
     constexpr double kMostMissing = 0.15;
     one.missing = missing_share(one.content, scene);
     if (one.missing > kMostMissing) {
-      return fail(RCode::kSurfaceMissing, "the scan lacks " + std::to_string(std::lround(100 * one.missing)) +
-                                              " % of the surface under its picture");
+      return refused(RCode::kSurfaceMissing, one.station.name,
+                     "the scan lacks " + std::to_string(std::lround(100 * one.missing)) +
+                         " % of the surface under its picture; expected at most " +
+                         std::to_string(std::lround(100 * kMostMissing)) + " %");
     }
   }
   const calib::model::Pose T_room_rig = rig.T_rig_room.inverse();
@@ -123,10 +131,11 @@ Status aim_looked_at(const InRoom& rig, const std::optional<Vector3d>& eye_rig, 
     const auto place = place_of(one.content, uv[k], scene);
     const std::string corner = std::string("its ") + calib::bake::kCornerNames[k] + " corner";
     if (!place && on_scan) {
-      return fail(RCode::kSurfaceMissing, "the scan has nothing at " + corner);
+      return refused(RCode::kSurfaceMissing, one.station.name, "the scan has nothing at " + corner);
     }
     if (!place) {
-      return fail(RCode::kStationOutOfReach, "seen from its eye, " + corner + " lies beyond its plane's horizon");
+      return refused(RCode::kStationOutOfReach, one.station.name,
+                     "seen from its eye, " + corner + " lies beyond its plane's horizon");
     }
     corners[k] = place->p;
     one.scan_sigma_m[k] = on_scan ? std::optional(place->sigma_m) : std::nullopt;
@@ -148,7 +157,7 @@ Status set_bounds(const InRoom& rig, calib::steer::LookState state, AimedStation
   if (station.to_scale) {
     auto all = calib::assess::corner_bounds(rig, command, station.corners_room, station.normals_room[0], state);
     if (!all) {
-      return fail(RCode::kStationOutOfReach, "a corner is behind the projector's lens");
+      return refused(RCode::kStationOutOfReach, station.station.name, "a corner is behind the projector's lens");
     }
     bounds = *std::move(all);
   } else {
@@ -160,7 +169,8 @@ Status set_bounds(const InRoom& rig, calib::steer::LookState state, AimedStation
                                                      .scan_sigma_m = station.scan_sigma_m[k]},
                                                     state);
       if (!bound) {
-        return fail(RCode::kStationOutOfReach, "a corner is behind the projector's lens or hidden from an eye");
+        return refused(RCode::kStationOutOfReach, station.station.name,
+                       "a corner is behind the projector's lens or hidden from an eye");
       }
       bounds.push_back(*bound);
     }
@@ -186,15 +196,9 @@ Result<std::vector<AimedStation>> aim_stations(const InRoom& rig, const proto::s
     one.station.content_px = {1600, static_cast<int>(1600 * wanted.size_m[1] / wanted.size_m[0])};
     one.station.tolerance_mm = wanted.tolerance_mm;
     const bool on_scan = wanted.surface == proto::stations::Surface::kScan;
-    const Status aiming =
-        on_scan || wanted.eye_m
-            ? aim_looked_at(
-                  rig, wanted.eye_m ? std::optional<Vector3d>(rig.T_rig_room * vector(*wanted.eye_m)) : std::nullopt,
-                  on_scan, scene, one)
-            : aim_to_scale(rig, T_room_content.q * Vector3d(0, 0, -1), one);
-    if (!aiming) {
-      return with_context(aiming.error(), "station '" + wanted.name + "'");
-    }
+    const auto eye_rig = wanted.eye_m ? std::optional<Vector3d>(rig.T_rig_room * vector(*wanted.eye_m)) : std::nullopt;
+    RAYSTEER_TRY(on_scan || eye_rig ? aim_looked_at(rig, eye_rig, on_scan, scene, one)
+                                    : aim_to_scale(rig, T_room_content.q * Vector3d(0, 0, -1), one));
     aimed.push_back(std::move(one));
   }
   return aimed;
