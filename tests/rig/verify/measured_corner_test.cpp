@@ -104,6 +104,8 @@ TEST_P(Verified, corners_are_as_sure_as_stated) {
       bounded += truth.norm() <= verified->corner_mm[c] + verified->sure_mm[c] ? 1 : 0;
       normalised += missed * missed / (verified->sure_mm[c] * verified->sure_mm[c]);
       width.push_back(verified->sure_mm[c]);
+      // What the verdict goes by is no smaller than what any corner may be off by.
+      EXPECT_GE(verified->bound_95_mm, verified->corner_mm[c] + verified->sure_mm[c]);
     }
   }
   ASSERT_GT(corners, 300);
