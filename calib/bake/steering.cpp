@@ -26,6 +26,27 @@ struct Area {
   Vector2d most = -least;
 };
 
+/// The command at whose angles the mirror stands when it should stand at `angles`. Curves are nearly straight with
+/// slope 1, so each round leaves a fiftieth.
+Vector2d command_of(const model::SteeredProjector& projector, const Vector2d& angles, Vector2d command) {
+  for (int round = 0; round < 10; ++round) {
+    command += angles - projector.angles(command);
+  }
+  return command;
+}
+
+/// As what command the drifted mirror stands when it is told this one.
+Vector2d stands_as(const model::SteeredProjector& projector, const MirrorDrift& drift, const Vector2d& told) {
+  const Vector2d angles = projector.angles(told);
+  return command_of(projector, angles + drift.gain.cwiseProduct(angles) + drift.offset_rad, told);
+}
+
+/// What the drifted mirror must be told to stand as at this command.
+Vector2d told_for(const model::SteeredProjector& projector, const MirrorDrift& drift, const Vector2d& command) {
+  const Vector2d angles = (projector.angles(command) - drift.offset_rad).cwiseQuotient(Vector2d::Ones() + drift.gain);
+  return command_of(projector, angles, command);
+}
+
 /// Around all places that a grid of commands reaches.
 Area reach(const model::SteeredProjector& projector, const SteeringRequest& request, const Vector2d& aim) {
   constexpr int kParts = 24;
@@ -33,8 +54,8 @@ Area reach(const model::SteeredProjector& projector, const SteeringRequest& requ
   for (int i = 0; i <= kParts; ++i) {
     for (int j = 0; j <= kParts; ++j) {
       const Vector2d share(i / double{kParts}, j / double{kParts});
-      const auto place = landing(projector, request.T_rig_plane, aim,
-                                 projector.least_rad + share.cwiseProduct(projector.most_rad - projector.least_rad));
+      const Vector2d told = projector.least_rad + share.cwiseProduct(projector.most_rad - projector.least_rad);
+      const auto place = landing(projector, request.T_rig_plane, aim, stands_as(projector, request.drift, told));
       if (place && place->norm() <= request.farthest_m) {
         area.least = area.least.cwiseMin(*place);
         area.most = area.most.cwiseMax(*place);
@@ -127,7 +148,8 @@ void fill(const model::SteeredProjector& projector, const SteeringRequest& reque
     for (int column = 0; column < parts.columns; ++column) {
       if (const auto& command = nodes.command(column, row)) {
         const auto i = static_cast<std::size_t>(row * parts.columns + column);
-        parts.nodes[i] = {nanoradians(command->x()), nanoradians(command->y())};
+        const Vector2d told = told_for(projector, request.drift, *command);
+        parts.nodes[i] = {nanoradians(told.x()), nanoradians(told.y())};
         leaves[i] = MirrorWindow(projector, *command).passes(m) ? 1 : 0;
       }
     }
@@ -155,8 +177,8 @@ double worst_m(const model::SteeredProjector& projector, const SteeringRequest& 
       const PlanePoint place{parts.origin.x + 0.5 * column * parts.spacing_m,
                              parts.origin.y + 0.5 * row * parts.spacing_m};
       if (const auto command = table.command(place)) {
-        const auto lands =
-            landing(projector, request.T_rig_plane, aim, Vector2d(command->axis1_rad, command->axis2_rad));
+        const Vector2d told(command->axis1_rad, command->axis2_rad);
+        const auto lands = landing(projector, request.T_rig_plane, aim, stands_as(projector, request.drift, told));
         worst = std::max(worst, lands ? (*lands - Vector2d(place.x, place.y)).norm() : 1e6);
       }
     }
@@ -185,6 +207,9 @@ std::optional<Vector2d> landing(const model::SteeredProjector& projector, const 
 Result<SteeringTable> bake_steering(const model::SteeredProjector& projector, const SteeringRequest& request) {
   if (!(request.bound_m > 0) || !(request.farthest_m > 0)) {
     return fail(RCode::kBadValue, "bound and farthest place of a steering table must be positive");
+  }
+  if (!request.drift.offset_rad.allFinite() || !(request.drift.gain.cwiseAbs().maxCoeff() < 0.5)) {
+    return fail(RCode::kBadValue, "a mirror's drift must be finite, its gain less than a half");
   }
   const Vector2d aim = request.aim_px.value_or(panel_middle(projector));
   const auto n = projector.lens.normalize(aim);

@@ -10,11 +10,18 @@
 
 namespace raysteer::calib::bake {
 
+/// Where the mirror stands since it drifted: at (1 + gain) times the angles that its command means, and offset_rad on.
+struct MirrorDrift {
+  Eigen::Vector2d offset_rad = Eigen::Vector2d::Zero();
+  Eigen::Vector2d gain = Eigen::Vector2d::Zero();
+};
+
 struct SteeringRequest {
   proto::lut::Frame frame = proto::lut::Frame::kRig;
   model::Pose T_frame_plane{};                           ///< goes into the table as it is
   model::Pose T_rig_plane{};                             ///< the same plane for the solved rig
   std::optional<Eigen::Vector2d> aim_px = std::nullopt;  ///< nothing: the panel's middle
+  MirrorDrift drift{};                                   ///< the table's commands make up for it
   double bound_m = 1e-4;                                 ///< asked
   double farthest_m = 20;                                ///< from the plane's origin; no place beyond is tabled
 };

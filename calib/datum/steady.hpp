@@ -1,4 +1,4 @@
-// Several views of a datum by one eye as one; views that do not agree are found. Inside calib/datum only.
+// Several views of a datum by one eye as one; views that do not agree are found.
 #pragma once
 
 #include <Eigen/Dense>

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/look/board_plane.hpp"
 #include "calib/solve/closed_form.hpp"
 
 namespace raysteer::calib::look {
@@ -290,25 +291,6 @@ class Problem {
   model::Camera drawing_;
   std::vector<Measurement> measurements_;
 };
-
-/// The plane's pose from the board in one eye.
-std::optional<model::Pose> plane_start(const TargetSpec& target, const Sight& sight) {
-  std::vector<Eigen::Vector2d> on_board, normalised;
-  for (const target::Corner& corner : sight.corners) {
-    if (const auto n = sight.camera.normalize(corner.q)) {
-      on_board.emplace_back(target::corner_position(target, corner.id).head<2>());
-      normalised.push_back(*n);
-    }
-  }
-  if (on_board.size() < 6) {
-    return std::nullopt;
-  }
-  const auto H = solve::homography(on_board, normalised);
-  if (!H) {
-    return std::nullopt;
-  }
-  return sight.T_camera_rig.inverse() * solve::plane_pose(*H, 1, Eigen::Vector2d::Zero());
-}
 
 /// The projector's pose from the discs of one eye; finds out whether it is mirrored.
 std::optional<model::PanelOnPlane> panel_start(const Input& input, const Sight& sight, const model::Pose& T_rig_plane) {

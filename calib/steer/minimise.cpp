@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace raysteer::calib::steer {
 
@@ -24,8 +25,16 @@ int minimise(Problem& problem, State& state, const Minimise& how) {
       const Eigen::VectorXd step = -damped.ldlt().solve(normal.g);
       if (step.allFinite()) {
         State next = moved(problem, state, step);
-        const double next_cost = cost(problem, next, weighting);
+        std::optional<Problem> there;  // where open cameras would see everything after the step
+        if (problem.open) {
+          there = problem;
+          see_again(*there, next.z);
+        }
+        const double next_cost = cost(there ? *there : problem, next, weighting);
         if (next_cost < normal.cost) {
+          if (there) {
+            problem = *std::move(there);
+          }
           better = true;
           gain = (normal.cost - next_cost) / normal.cost;
           state = std::move(next);

@@ -130,6 +130,23 @@ Eigen::Matrix<double, 12, 1> moved_sigma(const Problem& problem) {
   return sigma.replicate<2, 1>();
 }
 
+void see_again(Problem& problem, const Eigen::VectorXd& z) {
+  const model::Rig cameras = moved_cameras(problem.open->drawn, problem.open->by_z * z);
+  const Eyes eyes(cameras, problem.open->by_z);
+  for (ProblemLook& look : problem.looks) {
+    for (ProblemPoint& point : look.points) {
+      if (auto eye = eyes.see(*point.lit)) {
+        point.eye = *std::move(eye);
+      } else {
+        point.eye.between_eyes = kBehind;
+        point.eye.between_by_z.setZero();
+        point.eye.p_by_z.setZero();
+      }
+    }
+  }
+  problem.z_about = z;
+}
+
 int unknowns(const Problem& problem) { return Offsets(problem).all; }
 
 model::SteeredLook look_of(const Problem& problem, const State& state, std::size_t k) {

@@ -24,6 +24,7 @@ struct State {
 
 struct ProblemPoint {
   EyePoint eye;
+  const LitPoint* lit = nullptr;                         ///< what it was triangulated from; outlives the problem
   std::size_t index = 0;                                 ///< in its look
   Eigen::Matrix2d whiten = Eigen::Matrix2d::Identity();  ///< of the panel residual (algorithms 3.1)
   bool used = true;
@@ -34,6 +35,12 @@ struct ProblemLook {
   std::vector<ProblemPoint> points;
 };
 
+/// Cameras known only as drawn: by_z is far from linear over their tolerances.
+struct OpenCameras {
+  model::Rig drawn;
+  Eigen::MatrixXd by_z;
+};
+
 struct Problem {
   Drawing drawing;
   Eigen::VectorXd sigma;    ///< of the projector's parameters
@@ -41,7 +48,12 @@ struct Problem {
   double repeatability_rad = 20e-6;
   std::vector<ProblemLook> looks;
   std::optional<std::size_t> split;
+  std::optional<OpenCameras> open;  ///< points are then triangulated anew wherever a step takes the cameras
 };
+
+/// Triangulates all points by open cameras at z, where the problem is linear about from then on. A point whose rays no
+/// longer meet stays where it was and pulls nowhere.
+void see_again(Problem& problem, const Eigen::VectorXd& z);
 
 /// How residuals are counted: |whitened| / scale beyond `bound` counts linearly (Huber), or by its logarithm (Cauchy):
 /// then a whole look that is another's hardly pulls.

@@ -13,8 +13,7 @@ namespace raysteer::calib::steer {
 namespace {
 
 constexpr int kRelinear = 8;
-constexpr double kFarFromLinear = 8;  // of z: cameras as calibrated stay within sqrt(22) and some
-constexpr double kScattered = 2.5;    // times the stated repeatability: no mirror of that make
+constexpr double kScattered = 2.5;  // times the stated repeatability: no mirror of that make
 
 std::string sayable(double value) {
   const std::string text = std::to_string(value);
@@ -90,15 +89,10 @@ Result<Solution> solve(const Observations& given, const Drawing& drawing, const 
   const Eigen::VectorXd as_calibrated = Eigen::VectorXd::Zero(by_z.cols());
 
   // A start from few points, by as many tries as it takes.
-  auto few = build(observations, drawing, by_z, as_calibrated, {.points_per_look = options.starting_points});
+  auto few = build(observations, drawing, by_z, as_calibrated,
+                   {.points_per_look = options.starting_points, .open_cameras = options.open_cameras});
   RAYSTEER_TRY(few);
   Attempt start = attempts(*few, options, options.starts, &solution.starts);
-  // Cameras known only from their data sheets are far from linear: points are triangulated again where they are now.
-  for (int round = 0; round < kRelinear && !start.fits_all() && start.state.z.norm() > kFarFromLinear; ++round) {
-    few = build(observations, drawing, by_z, start.state.z, {.points_per_look = options.starting_points});
-    RAYSTEER_TRY(few);
-    start = attempt(*few, start.state, options);
-  }
   if (!start.fits_all()) {
     return why_not(observations, drawing, options, start);
   }
@@ -109,7 +103,7 @@ Result<Solution> solve(const Observations& given, const Drawing& drawing, const 
   Problem problem;
   double moved_z = 0;
   for (int round = 0; round < 2 || (round < kRelinear && moved_z > 1); ++round) {
-    auto all = build(observations, drawing, by_z, state.z);
+    auto all = build(observations, drawing, by_z, state.z, {.open_cameras = options.open_cameras});
     RAYSTEER_TRY(all);
     const double repeatability = round == 0 ? start.repeatability_rad : problem.repeatability_rad;
     problem = *std::move(all);

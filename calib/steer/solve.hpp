@@ -32,6 +32,8 @@ struct Options {
   double foreign_drawing_sigma = 12;       ///< from here on the solve is refused: kDrawingsDisagree
   int starting_points = 40;                ///< per look, for starts and searches; the last solve uses all
   int starts = 8;                          ///< at most, from the drawing and from numbers near it
+  int first_start = 0;                     ///< 0: the drawing; any other: only from numbers near it
+  bool open_cameras = false;               ///< known only as drawn: triangulated anew at every step
   bool explain = true;                     ///< when nothing fits, look for the reason: takes longer
 };
 

@@ -34,7 +34,8 @@ Result<Problem> build(const Observations& observations, const Drawing& drawing, 
                   .z_about = z,
                   .repeatability_rad = drawing.tolerance.repeatability_rad,
                   .looks = {},
-                  .split = {}};
+                  .split = {},
+                  .open = {}};
   const model::Rig cameras = moved_cameras(observations.cameras, camera_by_z * z);
   const Eyes eyes(cameras, camera_by_z);
   for (std::size_t k = 0; k < observations.looks.size(); ++k) {
@@ -45,7 +46,7 @@ Result<Problem> build(const Observations& observations, const Drawing& drawing, 
     ProblemLook built{.command_rad = look.command_rad, .points = {}};
     for (const std::size_t i : spread(look.points.size(), selection.points_per_look)) {
       if (auto eye = eyes.see(look.points[i])) {
-        built.points.push_back({.eye = *std::move(eye), .index = i});
+        built.points.push_back({.eye = *std::move(eye), .lit = &look.points[i], .index = i});
       }
     }
     if (built.points.size() < kFewestPoints) {
@@ -55,6 +56,9 @@ Result<Problem> build(const Observations& observations, const Drawing& drawing, 
                                                      ": leave the look out, or aim it where both cameras look");
     }
     problem.looks.push_back(std::move(built));
+  }
+  if (selection.open_cameras) {
+    problem.open = {.drawn = observations.cameras, .by_z = camera_by_z};
   }
   return problem;
 }
@@ -77,6 +81,9 @@ State start_near(const Problem& problem, int number) {
   }
   delta[1] = delta[0];  // focal lengths go together
   state.projector = model::perturbed(state.projector, delta);
+  for (Eigen::Index k = 0; problem.open && k < state.z.size(); ++k) {
+    state.z[k] += noise.normal();
+  }
   return state;
 }
 
@@ -166,6 +173,9 @@ int settle_repeatability(Problem& problem, State& state, const Options& options)
 
 Attempt attempt(Problem problem, State start, const Options& options, bool cauchy) {
   Attempt result{.state = std::move(start), .fit = {}};
+  if (problem.open) {
+    see_again(problem, result.state.z);
+  }
   result.repeatability_rad = problem.repeatability_rad;
   result.iterations =
       minimise(problem, result.state, {.cauchy = cauchy, .anneal = true, .most_iterations = kAnnealing});
@@ -203,17 +213,18 @@ Attempt attempts(const Problem& problem, const Options& options, int starts, int
   Attempt best;
   int iterations = 0;
   const auto grade = [](const Attempt& a) { return a.fits_all() ? 2 : a.fits ? 1 : 0; };
-  for (int number = 0; number < starts; ++number) {
+  for (int number = options.first_start; number < options.first_start + starts; ++number) {
     Attempt next = attempt(problem, start_near(problem, number), options);
     iterations += next.iterations;
-    if (number == 0 || grade(next) > grade(best) || (grade(next) == grade(best) && next.fit.rms < best.fit.rms)) {
+    if (number == options.first_start || grade(next) > grade(best) ||
+        (grade(next) == grade(best) && next.fit.rms < best.fit.rms)) {
       best = std::move(next);
     }
     if (used != nullptr) {
-      *used = number + 1;
+      *used = number + 1 - options.first_start;
     }
     // Foreign looks are believed when four starts agree that there is nothing better.
-    if (best.fits_all() || (best.fits && number >= 3)) {
+    if (best.fits_all() || (best.fits && number >= options.first_start + 3)) {
       break;
     }
   }

@@ -13,6 +13,7 @@ namespace raysteer::calib::steer {
 struct Selection {
   int points_per_look = 0;       ///< 0: all
   std::vector<bool> left_out{};  ///< per look; empty: none
+  bool open_cameras = false;     ///< Problem::open
 };
 
 /// The problem with its points triangulated by the cameras moved to `z`. Looks keep their order; left-out ones are
@@ -23,7 +24,7 @@ Result<Problem> build(const Observations& observations, const Drawing& drawing, 
 /// The drawing, with nothing learnt.
 State start_of(const Problem& problem);
 
-/// The drawing with numbers near it, by one tolerance each; the same for the same `number`.
+/// The drawing with numbers near it, by one tolerance each, those of open cameras too; the same for the same `number`.
 State start_near(const Problem& problem, int number);
 
 /// How well a state explains a problem.

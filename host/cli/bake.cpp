@@ -52,15 +52,19 @@ class Bake : public Command {
   Result<ExitCode> run(Context& context) override {
     auto rig = rig::read_aimed_rig(rig_, stations_, surface_);
     RAYSTEER_TRY(rig);
+    calib::bake::MirrorDrift drift;
     if (!refine_.empty()) {
       const auto session = session::Session::open(refine_, context.frames_root());
       RAYSTEER_TRY(session);
       const auto closed = rig::close_loop_by(*session, *rig, context.stage("decoding looks"));
       RAYSTEER_TRY(closed);
       report_loop(context, *closed);
+      if (closed->drift) {
+        drift = {.offset_rad = closed->drift->offset_rad, .gain = closed->drift->gain};
+      }
     }
     const Tick baking = context.stage("baking");
-    const auto set = calib::bake::bake_lut_set(rig->room.solution.projector, request(*rig));
+    const auto set = calib::bake::bake_lut_set(rig->room.solution.projector, request(*rig, drift));
     RAYSTEER_TRY(set);
     const auto bytes = proto::lut::write_lut_set(*set);
     RAYSTEER_TRY(bytes);
@@ -79,12 +83,13 @@ class Bake : public Command {
   }
 
  private:
-  static calib::bake::LutSetRequest request(const rig::AimedRig& rig) {
+  static calib::bake::LutSetRequest request(const rig::AimedRig& rig, const calib::bake::MirrorDrift& drift) {
     calib::bake::LutSetRequest request;
     request.calibration_id = rig.calibration.id;
     request.board_id = rig.calibration.meta.board;
     request.steering.frame = proto::lut::Frame::kDatums;
     request.steering.T_rig_plane = rig.room.T_rig_room;
+    request.steering.drift = drift;
     for (const proto::stations::KeepOut& zone : rig.wanted.keep_out) {
       proto::lut::KeepOut& kept = request.keep_out.emplace_back();
       kept.name = zone.name;

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "calib/steer/evaluate.hpp"
 #include "calib/steer/solve.hpp"
+#include "calib/steer/without_board.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/rig_result.hpp"
 #include "host/exchange/calibration_file.hpp"
@@ -19,6 +21,8 @@
 #include "host/pretend/truth_file.hpp"
 #include "host/rig/drawing.hpp"
 #include "host/rig/gather.hpp"
+#include "host/rig/known_length.hpp"
+#include "host/rig/known_plane.hpp"
 #include "host/rig/read_files.hpp"
 #include "host/rig/room.hpp"
 #include "host/rig/stations.hpp"
@@ -32,6 +36,8 @@ using calib::steer::Evaluation;
 using calib::steer::Look;
 using calib::steer::Solution;
 
+/// Instead of a calibration of the cameras.
+constexpr std::string_view kDrawn = "drawn";
 /// Looks of this name are never solved with, but predicted.
 constexpr std::string_view kCheck = "check";
 /// Without any such look, every so manieth is taken.
@@ -71,24 +77,36 @@ class CalibrateRig : public Command {
         .summary = "Calibrate projector and steered mirror from some looks",
         .description =
             "Decodes every look of the session, and solves cameras, projector and mirror as one model that "
-            "predicts every other look. The start and how far a part may be off come from the board file. Looks "
-            "whose names begin with 'check' are never solved with but predicted, and what they are missed by is "
-            "the accuracy stated; without such looks every fourth is taken.\n\n"
+            "predicts every other look. The start and how far a part may be off come from the board file. With "
+            "'--cameras drawn' the cameras come from there too: no board was ever shown, but the looks must see "
+            "depth, and how long a metre is must come from --length or --baseline. Looks whose names begin with "
+            "'check' are never solved with but predicted, and what they are missed by is the accuracy stated; "
+            "without such looks every fourth is taken.\n\n"
             "With --previous, and when --out replaces an earlier calibration, says by how many millimetres the light "
             "moved since, and whether the rig as a whole did or something inside it.\n\n"
             "With --out DIR: rig.toml (docs/rig-format.md), result.json and report.html.",
         .example =
             "raysteer calibrate rig looks --cameras cameras --board mock-galvo --out rig\n"
-            "raysteer calibrate rig looks --cameras cameras --board mock-head --survey hall --json",
+            "raysteer calibrate rig looks --cameras cameras --board mock-head --survey hall --json\n"
+            "raysteer calibrate rig looks --cameras drawn --length 3-7=2.514 --board mock-galvo --out rig",
         .out = TakesOut::kOptional,
         .takes_frames = true};
   }
 
   void declare(Options& options) override {
     options.argument("SESSION", &session_, "session file or its folder").required();
-    options.option("--cameras", "FILE", &cameras_, "calibration of the cameras, or its folder").required();
+    options
+        .option("--cameras", "FILE", &cameras_,
+                "calibration of the cameras, or its folder; 'drawn': none, cameras are solved too")
+        .required();
     options.option("--board", "FILE", &board_, "board file, or an installed one's name: how the rig is drawn")
         .required();
+    options.option("--baseline", "METRES", &baseline_, "with '--cameras drawn': measured from lens to lens");
+    options.option("--length", "A-B=METRES", &length_,
+                   "with '--cameras drawn': measured between the datums coded A and B");
+    options.option("--plane", "LOOK", &plane_,
+                   "look in which the session's board lies on the plane that all light "
+                   "falls on; looks that one eye sees count then too");
     options.option("--survey", "FILE", &survey_, "where the room's datums are, or an installed survey's name");
     options.option("--previous", "FILE", &previous_, "earlier calibration of this rig, or its folder, to compare with");
     options.option("--stations", "FILE", &stations_, "stations whose bounds are wanted, or an installed file's name");
@@ -97,31 +115,50 @@ class CalibrateRig : public Command {
   Result<ExitCode> run(Context& context) override {
     const auto session = session::Session::open(session_, context.frames_root());
     RAYSTEER_TRY(session);
-    const auto cameras = exchange::read_calibration(cameras_);
-    RAYSTEER_TRY(cameras);
-    const auto drawing = rig::read_drawing(board_);
+    const auto board = rig::read_board(board_);
+    RAYSTEER_TRY(board);
+    const auto drawing = rig::drawing_of(*board);
     RAYSTEER_TRY(drawing);
-    auto gathered = rig::gather(*session, cameras->rig, {}, context.stage("decoding looks"));
+    const auto length = known_length();
+    RAYSTEER_TRY(length);
+    const auto cameras = this->cameras(*board);
+    RAYSTEER_TRY(cameras);
+    const auto surveyed = see_room(context, *session);
+    RAYSTEER_TRY(surveyed);
+    const auto options = gather_options(context, *session, *cameras);
+    RAYSTEER_TRY(options);
+    auto gathered = rig::gather(*session, *cameras, *options, context.stage("decoding looks"));
     RAYSTEER_TRY(gathered);
     for (const rig::MissedLook& missed : gathered->missed) {
       context.note(fmt::format("look '{}' left out [{}]: {}", missed.name, to_string(missed.error.rcode),
                                missed.error.message()));
     }
+    context.json()["one_eyed_looks"] = gathered->one_eyed.size();
+    for (const std::string& name : gathered->one_eyed) {
+      context.note(fmt::format("look '{}': seen by one eye, placed on the plane of look '{}'", name, plane_));
+    }
     Parts parts = split(std::move(gathered->observations.looks));
     gathered->observations.looks = std::move(parts.solved);
+    const auto known = found(context, *session, *length);
+    RAYSTEER_TRY(known);
     const auto solving = context.stage("solving");
-    const auto solution = calib::steer::solve(gathered->observations, *drawing);
+    const auto solution = is_drawn() ? calib::steer::solve_without_board(gathered->observations, *drawing, *known)
+                                     : calib::steer::solve(gathered->observations, *drawing);
     RAYSTEER_TRY(solution);
+    const double drawn_rad = drawing->tolerance.repeatability_rad;
+    if (!gathered->one_eyed.empty() && solution->repeatability_rad > calib::steer::kMostScatter * drawn_rad) {
+      return fail(
+          RCode::kRigNotSolved,
+          fmt::format("the mirror would repeat to {:.0f} urad, drawn are {:.0f}: does all light of the looks that "
+                      "one eye saw fall on the plane of look '{}'?",
+                      1e6 * solution->repeatability_rad, 1e6 * drawn_rad, plane_));
+    }
     RAYSTEER_TRY(Context::poll());
     const auto evaluation = calib::steer::evaluate(*solution, parts.held_out);
     RAYSTEER_TRY(evaluation);
     std::optional<rig::InRoom> room;
-    std::optional<proto::survey::Survey> survey;
-    if (!survey_.empty()) {
-      auto read = rig::read_survey(survey_);
-      RAYSTEER_TRY(read);
-      survey = *std::move(read);
-      auto tied = tie(context, *session, *solution, *survey);
+    if (*surveyed) {
+      auto tied = rig::tie_to_room(*solution, (*surveyed)->survey, (*surveyed)->views);
       RAYSTEER_TRY(tied);
       room = *std::move(tied);
     }
@@ -148,7 +185,7 @@ class CalibrateRig : public Command {
     add_reach(result, now);
     add_solution(result, now, *solution, *evaluation, parts.held_out);
     if (room) {
-      add_datums(result, room->tie, *survey);
+      add_datums(result, room->tie, (*surveyed)->survey);
     }
     add_stations(result, *aimed);
     const auto before = earlier(context);
@@ -157,6 +194,7 @@ class CalibrateRig : public Command {
       RAYSTEER_TRY(add_difference(result, now, **before, *aimed));
     }
     report(context, *solution, *evaluation, error, verdict);
+    report_cameras(context, *solution, *truth ? &(*truth)->rig : nullptr);
     report_room(context, room);
     report_reach(context, result);
     print_difference(context, result);
@@ -169,7 +207,9 @@ class CalibrateRig : public Command {
                                    .held_out_p95_px = evaluation->p95_px,
                                    .held_out_median_mm = evaluation->median_mm,
                                    .held_out_p95_mm = evaluation->p95_mm,
-                                   .looks = static_cast<int>(solution->looks.size())};
+                                   .looks = static_cast<int>(solution->looks.size()),
+                                   .survey = *surveyed ? (*surveyed)->survey.name : "",
+                                   .survey_id = *surveyed ? (*surveyed)->id : ""};
       RAYSTEER_TRY(exchange::write_file(context.out() / "rig.toml", exchange::to_toml(final_solution, stated, meta)));
       RAYSTEER_TRY(report::write_result(context.out(), result, context.json()));
     }
@@ -177,11 +217,80 @@ class CalibrateRig : public Command {
   }
 
  private:
-  static Result<rig::InRoom> tie(Context& context, const session::Session& session, const Solution& solution,
-                                 const proto::survey::Survey& survey) {
-    const auto views = rig::see_datums(session, kDatumLooks, context.stage("finding datums"));
+  /// The room's survey, and where the session's looks show its datums.
+  struct Surveyed {
+    proto::survey::Survey survey;
+    std::string id;
+    std::vector<calib::datum::View> views;
+  };
+
+  /// No value without --survey. Before anything is decoded, so that a rig that moved is named at once.
+  Result<std::optional<Surveyed>> see_room(Context& context, const session::Session& session) const {
+    if (survey_.empty()) {
+      return std::optional<Surveyed>();
+    }
+    auto survey = rig::read_survey(survey_);
+    RAYSTEER_TRY(survey);
+    auto id = rig::survey_id(survey_);
+    RAYSTEER_TRY(id);
+    auto views = rig::see_datums(session, kDatumLooks, context.stage("finding datums"));
     RAYSTEER_TRY(views);
-    return rig::tie_to_room(solution, survey, *views);
+    return std::optional(Surveyed{*std::move(survey), *std::move(id), *std::move(views)});
+  }
+
+  /// Nobody gave the cameras' calibration.
+  bool is_drawn() const { return cameras_ == kDrawn; }
+
+  Result<calib::model::Rig> cameras(const proto::board::Board& board) const {
+    if (is_drawn()) {
+      return rig::cameras_of(board);
+    }
+    auto file = exchange::read_calibration(cameras_);
+    RAYSTEER_TRY(file);
+    return std::move(file->rig);
+  }
+
+  Result<rig::GatherOptions> gather_options(Context& context, const session::Session& session,
+                                            const calib::model::Rig& cameras) const {
+    rig::GatherOptions options;
+    options.cameras_drawn = is_drawn();
+    if (plane_.empty()) {
+      return options;
+    }
+    if (is_drawn()) {
+      return fail(RCode::kUsage, "--plane takes calibrated cameras: a board's pose cannot be told from drawn ones");
+    }
+    auto plane = rig::find_plane(session, cameras, plane_, context.stage("finding the plane"));
+    RAYSTEER_TRY(plane);
+    options.plane = *plane;
+    options.plane_look = plane_;
+    return options;
+  }
+
+  /// What --baseline or --length says; no value without them.
+  Result<std::optional<rig::MeasuredLength>> known_length() const {
+    if (baseline_.empty() && length_.empty()) {
+      return std::optional<rig::MeasuredLength>();
+    }
+    if (!is_drawn() || (!baseline_.empty() && !length_.empty())) {
+      return fail(RCode::kUsage,
+                  "expected one of --baseline and --length, and only with '--cameras drawn': calibrated "
+                  "cameras know how long a metre is");
+    }
+    const auto length = length_.empty() ? rig::read_baseline(baseline_) : rig::read_length(length_);
+    RAYSTEER_TRY(length);
+    return std::optional(*length);
+  }
+
+  /// The same, with its ends found in the session.
+  Result<std::optional<calib::steer::KnownLength>> found(Context& context, const session::Session& session,
+                                                         const std::optional<rig::MeasuredLength>& length) const {
+    if (!length) {
+      return std::optional<calib::steer::KnownLength>();
+    }
+    auto known = rig::find_length(session, *length, kDatumLooks, context.stage("finding the known length"));
+    RAYSTEER_TRY(known);
+    return std::optional(*std::move(known));
   }
 
   /// Stations that were asked for.
@@ -322,9 +431,44 @@ class CalibrateRig : public Command {
     }
   }
 
+  /// What the cameras came out as, where they were not given.
+  void report_cameras(Context& context, const Solution& solution, const calib::model::Rig* truth) const {
+    Json& json = context.json();
+    json["cameras"]["drawn"] = is_drawn();
+    if (!is_drawn()) {
+      return;
+    }
+    double sigma = 0;
+    double error = 0;
+    for (std::size_t i = 0; i < solution.cameras.devices.size(); ++i) {
+      const double f = solution.cameras.devices[i].camera.fx;
+      const int at = solution.cameras.offset(i);
+      sigma = std::max(sigma, std::sqrt(solution.covariance(at, at)) / f);
+      error = truth != nullptr ? std::max(error, std::abs(f / truth->devices[i].camera.fx - 1)) : 0;
+    }
+    const double baseline = solution.cameras.devices[1].T_device_rig.t.norm();
+    json["cameras"]["focal_sigma"] = sigma;
+    json["cameras"]["baseline_m"] = baseline;
+    json["cameras"]["scale_by"] = !length_.empty() ? "length" : !baseline_.empty() ? "baseline" : "drawing";
+    context.print(
+        fmt::format("cameras          solved from the drawing: focal length +- {:.3f} %, {:.1f} mm apart; "
+                    "metres by {}\n",
+                    100 * sigma, 1e3 * baseline,
+                    !length_.empty()     ? "the known length"
+                    : !baseline_.empty() ? "the measured baseline"
+                                         : "the drawn baseline: give --length or --baseline for true ones"));
+    if (truth != nullptr) {
+      json["truth"]["focal_error"] = error;
+      context.print(fmt::format("focal lengths against the truth: {:.3f} %\n", 100 * error));
+    }
+  }
+
   std::string session_;
   std::string cameras_;
   std::string board_;
+  std::string plane_;
+  std::string baseline_;
+  std::string length_;
   std::string survey_;
   std::string previous_;
   std::string stations_;

@@ -35,6 +35,8 @@ struct RigMeta {
   double held_out_median_px = 0, held_out_p95_px = 0;  ///< 0: no look was held out
   double held_out_median_mm = 0, held_out_p95_mm = 0;
   int looks = 0;
+  std::string survey{};     ///< its name; empty where none was used
+  std::string survey_id{};  ///< survey_id() of the file's text
 };
 
 struct RigCalibration {
@@ -51,6 +53,8 @@ struct RigCalibration {
 
 /// The file's text; the covariance's rows of single looks are left out.
 std::string to_toml(const calib::steer::Solution& solution, const std::optional<RoomTie>& room, const RigMeta& meta);
+/// 16 hexadecimal digits that stand for a survey file's text, to tell whether it was edited since.
+std::string survey_id(std::string_view text);
 /// The id a rig gets: the same numbers give the same id.
 std::string rig_id(const calib::steer::Solution& solution, const std::optional<RoomTie>& room);
 

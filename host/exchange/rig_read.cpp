@@ -97,6 +97,8 @@ RigMeta read_origin(TomlTable& table) {
   meta.session = table.text("session", "");
   meta.board = table.text("board", "");
   meta.verdict = table.text("verdict", "");
+  meta.survey = table.text("survey", "");
+  meta.survey_id = table.text("survey_id", "");
   meta.whitened_rms = table.number("whitened_rms", {0, kHuge}, 0);
   meta.looks = static_cast<int>(table.integer("looks", {0, 1'000'000}, 0));
   meta.held_out_median_px = table.number("held_out_median_px", {0, kHuge}, 0);

@@ -90,6 +90,8 @@ RoomTie room_tie(const calib::steer::InRoom& rig, int datums, double scale) {
   return {.T_rig_room = rig.T_rig_room, .covariance = rig.covariance(rows, rows), .datums = datums, .scale = scale};
 }
 
+std::string survey_id(std::string_view text) { return text_id(text); }
+
 std::string rig_id(const Solution& solution, const std::optional<RoomTie>& room) {
   return text_id(numbers_text(solution, room));
 }
@@ -100,6 +102,10 @@ std::string to_toml(const Solution& solution, const std::optional<RoomTie>& room
       fmt::format("\n[origin]\nsession = {}\nboard = {}\nverdict = {}\nwhitened_rms = {}\nlooks = {}\n",
                   document::quoted(meta.session), document::quoted(meta.board), document::quoted(meta.verdict),
                   exact(meta.whitened_rms), meta.looks);
+  if (!meta.survey.empty()) {
+    origin +=
+        fmt::format("survey = {}\nsurvey_id = {}\n", document::quoted(meta.survey), document::quoted(meta.survey_id));
+  }
   if (meta.held_out_p95_px > 0) {
     origin +=
         fmt::format("held_out_median_px = {}\nheld_out_p95_px = {}\nheld_out_median_mm = {}\nheld_out_p95_mm = {}\n",

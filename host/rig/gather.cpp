@@ -6,6 +6,9 @@
 #include <optional>
 #include <utility>
 
+#include "host/rig/known_plane.hpp"
+#include "host/rig/pixel_floor.hpp"
+#include "host/rig/thin_out.hpp"
 #include "host/scan/match_look.hpp"
 #include "host/scan/scan.hpp"
 
@@ -17,48 +20,18 @@ using calib::steer::LitPoint;
 using calib::steer::Look;
 using session::Session;
 
-/// Fewer points than this say little of a look's two angles.
-constexpr std::size_t kFewestPoints = 20;
-
-double badness(const Match& match) { return match.cov_left.trace() + match.cov_right.trace(); }
-
-/// No place is trusted beyond this, px: what lens model and decoding leave behind is the same for neighbours, and many
-/// points together would pass it off for a camera that moved.
-constexpr double kFloorPx = 0.02;
-
-Eigen::Matrix2d with_floor(const Eigen::Matrix2d& cov) {
-  return cov + kFloorPx * kFloorPx * Eigen::Matrix2d::Identity();
-}
-
-/// At the rim of the light a place may be known across the stripes of one axis only.
-bool known_both_ways(const Eigen::Matrix2d& cov) {
-  return cov.allFinite() && cov.trace() > 0 && cov.determinant() > 1e-4 * cov.trace() * cov.trace();
-}
-
-/// The best match of each cell of a grid over the panel.
+/// `cameras`: calibrated; null where they are known only as drawn, so that they cannot say how pixels scatter.
 std::vector<LitPoint> thin_out(const scan::MatchedLook& matched, int panel_width, int panel_height,
-                               const GatherOptions& options) {
-  std::vector<const Match*> best(static_cast<std::size_t>(options.columns) * static_cast<std::size_t>(options.rows));
-  for (const Match& match : matched.matches.measured) {
-    if (!known_both_ways(match.cov_left) || !known_both_ways(match.cov_right)) {
-      continue;
-    }
-    const int column = std::min(match.i * matched.spacing * options.columns / panel_width, options.columns - 1);
-    const int row = std::min(match.j * matched.spacing * options.rows / panel_height, options.rows - 1);
-    const Match*& kept = best[static_cast<std::size_t>(row) * static_cast<std::size_t>(options.columns) +
-                              static_cast<std::size_t>(column)];
-    if (kept == nullptr || badness(match) < badness(*kept)) {
-      kept = &match;
-    }
-  }
+                               const calib::scene::TwoViews* cameras, const GatherOptions& options) {
+  const double floor_px = cameras != nullptr ? pixel_floor(*cameras, matched.matches.measured) : kUnknownFloorPx;
   std::vector<LitPoint> points;
-  for (const Match* match : best) {
-    if (match != nullptr) {
-      points.push_back({.x = Eigen::Vector2d(match->i * matched.spacing, match->j * matched.spacing),
-                        .q = {match->q_left, match->q_right},
-                        .cov_x = Eigen::Matrix2d::Zero(),
-                        .cov_q = {with_floor(match->cov_left), with_floor(match->cov_right)}});
-    }
+  for (const Match* match :
+       best_of_cells(matched, panel_width, panel_height, {options.columns, options.rows},
+                     [](const Match& m) { return known_both_ways(m.cov_left) && known_both_ways(m.cov_right); })) {
+    points.push_back({.x = Eigen::Vector2d(match->i * matched.spacing, match->j * matched.spacing),
+                      .q = {match->q_left, match->q_right},
+                      .cov_x = Eigen::Matrix2d::Zero(),
+                      .cov_q = {with_floor(match->cov_left, floor_px), with_floor(match->cov_right, floor_px)}});
   }
   return points;
 }
@@ -74,6 +47,40 @@ std::optional<Eigen::Vector2d> feedback(const Session& session, const std::strin
     }
   }
   return count > 0 ? std::optional<Eigen::Vector2d>(sum / count) : std::nullopt;
+}
+
+/// Points that both eyes see. Errors: why there are none or too few.
+Result<std::vector<LitPoint>> see_with_both(const Session& session, int look, const calib::scene::TwoViews* cameras,
+                                            const GatherOptions& options, const Tick& tick) {
+  auto decoded = scan::decode_cameras(session, look, {}, tick);
+  RAYSTEER_TRY(decoded);
+  const PatternSequence& sequence = session.manifest().sequence;
+  auto matched = scan::match_look(*decoded, sequence.panel_width, sequence.panel_height);
+  RAYSTEER_TRY(matched);
+  auto points = thin_out(*matched, sequence.panel_width, sequence.panel_height, cameras, options);
+  if (points.size() < kFewestPoints) {
+    return fail(RCode::kTooFewMatches,
+                std::to_string(points.size()) + " points, at least " + std::to_string(kFewestPoints) + " are needed");
+  }
+  return points;
+}
+
+/// What one eye saw of look `index` of the observations.
+struct OneEyedLook {
+  std::size_t index = 0;
+  OneEye seen;
+};
+
+void put_on_plane(Gathered& gathered, const std::vector<OneEyedLook>& looks, const GatherOptions& options) {
+  std::size_t together = 0;
+  for (const OneEyedLook& look : looks) {
+    together += look.seen.x.size();
+  }
+  for (const OneEyedLook& look : looks) {
+    Look& whole = gathered.observations.looks[look.index];
+    whole.points = on_plane(look.seen, gathered.observations.cameras, *options.plane, together);
+    gathered.one_eyed.push_back(whole.name);
+  }
 }
 
 }  // namespace
@@ -98,6 +105,8 @@ Status check_cameras(const Session& session, const calib::model::Rig& cameras) {
 Result<Gathered> gather(const Session& session, const calib::model::Rig& cameras, const GatherOptions& options,
                         const Tick& tick) {
   RAYSTEER_TRY(check_cameras(session, cameras));
+  const auto views = calib::scene::two_views(cameras, 0, 1);
+  RAYSTEER_TRY(views);
   Gathered gathered;
   gathered.observations.cameras = cameras;
   std::vector<int> numbers;
@@ -106,42 +115,40 @@ Result<Gathered> gather(const Session& session, const calib::model::Rig& cameras
     if (!options.looks.empty() && std::ranges::find(options.looks, named.name) == options.looks.end()) {
       continue;
     }
+    if (named.name == options.plane_look) {
+      continue;
+    }
     if (!named.command || named.command->size() != 2) {
       return fail(RCode::kCommandMissing, "look '" + named.name + "' has no 'command_rad' of two angles");
     }
     numbers.push_back(look);
   }
-  const PatternSequence& sequence = session.manifest().sequence;
+  std::vector<OneEyedLook> one_eyed;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const auto part = [&](double done) {
       return (static_cast<double>(k) + done) / static_cast<double>(numbers.size());
     };
     const auto& named = session.manifest().looks[static_cast<std::size_t>(numbers[k])];
-    auto decoded =
-        scan::decode_cameras(session, numbers[k], {}, [&](double done) { return !tick || tick(part(done)); });
-    if (!decoded) {
-      if (decoded.error().rcode == RCode::kCancelled) {
-        return std::move(decoded).error();
-      }
-      gathered.missed.push_back({named.name, std::move(decoded).error()});
-      continue;
-    }
-    auto matched = scan::match_look(*decoded, sequence.panel_width, sequence.panel_height);
-    if (!matched) {
-      return std::move(matched).error();
+    auto points = see_with_both(session, numbers[k], options.cameras_drawn ? nullptr : &*views, options,
+                                [&](double done) { return !tick || tick(part(done)); });
+    if (!points && points.error().rcode == RCode::kCancelled) {
+      return std::move(points).error();
     }
     Look look{.name = named.name,
               .command_rad = Eigen::Vector2d((*named.command)[0], (*named.command)[1]),
               .feedback_rad = feedback(session, named.name),
-              .points = thin_out(*matched, sequence.panel_width, sequence.panel_height, options)};
-    if (look.points.size() < kFewestPoints) {
-      gathered.missed.push_back(
-          {named.name, fail(RCode::kTooFewMatches, std::to_string(look.points.size()) + " points, at least " +
-                                                       std::to_string(kFewestPoints) + " are needed")});
+              .points = {}};
+    if (points) {
+      look.points = *std::move(points);
+    } else if (auto seen = options.plane ? see_with_one_eye(session, numbers[k], options) : points.error()) {
+      one_eyed.push_back({gathered.observations.looks.size(), *std::move(seen)});
+    } else {
+      gathered.missed.push_back({named.name, std::move(points).error()});
       continue;
     }
     gathered.observations.looks.push_back(std::move(look));
   }
+  put_on_plane(gathered, one_eyed, options);
   if (gathered.observations.looks.empty()) {
     return fail(RCode::kTooFewLooks, gathered.missed.empty()
                                          ? "the session has no looks"

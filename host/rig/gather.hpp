@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/steer/observations.hpp"
+#include "calib/steer/one_eye.hpp"
 #include "hal/base/result.hpp"
 #include "host/session/session.hpp"
 
@@ -23,6 +25,7 @@ struct MissedLook {
 struct Gathered {
   calib::steer::Observations observations;
   std::vector<MissedLook> missed;
+  std::vector<std::string> one_eyed;  ///< looks taken from one eye
 };
 
 struct GatherOptions {
@@ -31,6 +34,10 @@ struct GatherOptions {
   int columns = 24;
   int rows = 16;
   std::vector<std::string> looks;  ///< by name, in this order; empty: all
+  bool cameras_drawn = false;      ///< known only as drawn: they cannot say how pixels scatter
+  /// Looks of which both eyes do not see enough are taken from one eye, where the light lies on this plane.
+  std::optional<calib::steer::KnownPlane> plane{};
+  std::string plane_look{};  ///< left out: there a board lies in the light
 };
 
 /// Are these the session's two cameras, in its order? Errors: kCameraCount, kCalibrationMismatch.

@@ -1,5 +1,6 @@
 #include "host/rig/read_files.hpp"
 
+#include "host/exchange/rig_file.hpp"
 #include "host/exchange/write_file.hpp"
 #include "host/rig/drawing.hpp"
 #include "host/sim/find_file.hpp"
@@ -24,6 +25,11 @@ Result<proto::board::Board> read_board(const std::string& name) {
 
 Result<proto::survey::Survey> read_survey(const std::string& name) {
   return read("surveys", name, proto::survey::read_survey);
+}
+
+Result<std::string> survey_id(const std::string& name) {
+  return read("surveys", name,
+              [](std::string_view text, std::string_view) { return Result<std::string>(exchange::survey_id(text)); });
 }
 
 Result<proto::stations::Stations> read_stations(const std::string& name) {

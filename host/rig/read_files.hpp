@@ -14,6 +14,8 @@ namespace raysteer::host::rig {
 /// Errors: kFileMissing, kFileUnreadable, and those of the reader.
 Result<proto::board::Board> read_board(const std::string& name);
 Result<proto::survey::Survey> read_survey(const std::string& name);
+/// exchange::survey_id() of the file.
+Result<std::string> survey_id(const std::string& name);
 Result<proto::stations::Stations> read_stations(const std::string& name);
 /// The board's drawing; also errors of drawing_of().
 Result<calib::steer::Drawing> read_drawing(const std::string& name);

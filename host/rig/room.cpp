@@ -1,9 +1,9 @@
 #include "host/rig/room.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "calib/datum/steady.hpp"
 #include "calib/target/datum.hpp"
 #include "hal/base/pattern.hpp"
 
@@ -12,34 +12,8 @@ namespace {
 
 using calib::datum::View;
 using calib::steer::RoomPoint;
-using calib::target::SeenDatum;
 
 Eigen::Vector3d vector(const proto::survey::Vec3& v) { return {v[0], v[1], v[2]}; }
-
-/// One datum in one eye, on average over the views; no value where it was never seen.
-struct Mean {
-  Eigen::Vector2d q = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d cov = Eigen::Matrix2d::Zero();
-  int count = 0;
-};
-
-Mean mean_of(const std::vector<View>& views, std::size_t eye, unsigned code) {
-  Mean mean;
-  for (const View& view : views) {
-    for (const SeenDatum& seen : view.eyes[eye]) {
-      if (seen.code == code) {
-        mean.q += seen.q;
-        mean.cov += seen.cov;
-        ++mean.count;
-      }
-    }
-  }
-  if (mean.count > 0) {
-    mean.q /= mean.count;
-    mean.cov /= mean.count * mean.count;
-  }
-  return mean;
-}
 
 /// Where the disc's centre is seen, of which the ellipse's middle is not the picture (calib/target/datum.hpp).
 std::optional<Eigen::Vector2d> centre_seen(const Eigen::Vector2d& middle, const calib::model::Device& eye,
@@ -73,7 +47,8 @@ Result<std::vector<View>> see_datums(const session::Session& session, int most_l
   const int count = std::min(most_looks, session.looks());
   std::vector<View> views;
   for (int k = 0; k < count; ++k) {
-    const int look = k * session.looks() / count;
+    // The first look and the last are among them: a rig that moved between any two others stands elsewhere there.
+    const int look = count > 1 ? k * (session.looks() - 1) / (count - 1) : 0;
     View view{.name = session.manifest().looks[static_cast<std::size_t>(look)].name};
     for (int eye = 0; eye < 2; ++eye) {
       if (tick && !tick((k + 0.5 * eye) / count)) {
@@ -85,6 +60,9 @@ Result<std::vector<View>> see_datums(const session::Session& session, int most_l
     }
     views.push_back(std::move(view));
   }
+  if (auto seen = calib::datum::steady(views); !seen && seen.error().rcode == RCode::kRigMoved) {
+    return std::move(seen).error();
+  }
   return views;
 }
 
@@ -92,11 +70,13 @@ Result<InRoom> tie_to_room(const calib::steer::Solution& solution, const proto::
                            const std::vector<View>& views) {
   auto tie = calib::datum::tie_to_room(solution.cameras, survey, views);
   RAYSTEER_TRY(tie);
+  const auto means = calib::datum::steady(views);
+  RAYSTEER_TRY(means);
   const calib::model::Pose T_rig_room = tie->T_room_rig.inverse();
   std::vector<RoomPoint> points;
   for (const proto::survey::SurveyedDatum& datum : survey.datums) {
-    const std::array means{mean_of(views, 0, datum.code), mean_of(views, 1, datum.code)};
-    if (means[0].count == 0 || means[1].count == 0) {
+    const auto mean = means->find(datum.code);
+    if (mean == means->end() || !mean->second[0] || !mean->second[1]) {
       continue;
     }
     RoomPoint point;
@@ -104,10 +84,10 @@ Result<InRoom> tie_to_room(const calib::steer::Solution& solution, const proto::
     point.covariance = 1e-6 * datum.sigma_mm * datum.sigma_mm * Eigen::Matrix3d::Identity();
     bool seen = true;
     for (std::size_t eye = 0; eye < 2; ++eye) {
-      const auto q = centre_seen(means[eye].q, solution.cameras.devices[eye], T_rig_room, datum);
+      const auto q = centre_seen(mean->second[eye]->q, solution.cameras.devices[eye], T_rig_room, datum);
       seen = seen && q.has_value();
       point.q[eye] = q.value_or(Eigen::Vector2d::Zero());
-      point.cov_q[eye] = means[eye].cov;
+      point.cov_q[eye] = mean->second[eye]->cov;
     }
     if (seen) {
       points.push_back(point);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@
 
 namespace raysteer::host::rig {
 
-/// The datums that both eyes see in the black frames of at most `most_looks` looks, evenly spread over the session.
-/// Errors: kCameraCount; kBadSequence (no black frame); those of Session::load; kCancelled.
+/// The datums that both eyes see in the black frames of at most `most_looks` looks, evenly spread over the session from
+/// its first look to its last. Errors: kCameraCount; kBadSequence (no black frame); those of Session::load; kRigMoved
+/// (they are not where other looks show them); kCancelled.
 Result<std::vector<calib::datum::View>> see_datums(const session::Session& session, int most_looks = 8,
                                                    const Tick& tick = {});
 

@@ -40,6 +40,20 @@ struct FloorTask {
   int dots = 0;                 ///< closes the loop at each station where more than 0
 };
 
+/// The rig as a calibration could have left it: cameras off by what their covariance says; the projector as it is, so
+/// that it is off in the room by what the cameras are.
+inline calib::steer::Solution solution_of(const IdealRig& rig, std::uint64_t seed) {
+  calib::steer::Solution solution;
+  solution.projector = rig.projector;
+  solution.cameras = calibrated_cameras(rig, seed);
+  solution.repeatability_rad = 20e-6;
+  const Eigen::Index cameras = solution.cameras.covariance.rows();
+  const Eigen::Index all = cameras + solution.projector_parameters();
+  solution.covariance = 1e-16 * Eigen::MatrixXd::Identity(all, all);
+  solution.covariance.topLeftCorner(cameras, cameras) = solution.cameras.covariance;
+  return solution;
+}
+
 /// The rig tied to the room by datums on the floor. The true room's frame is the true rig's, and the fit starts a
 /// little off it.
 inline std::optional<calib::steer::InRoom> tied_to_room(const IdealRig& rig, const calib::steer::Solution& solution,

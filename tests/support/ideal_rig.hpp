@@ -24,8 +24,10 @@ namespace raysteer::support {
 struct IdealOptions {
   double noise_px = 0.2;  ///< one standard deviation of each coordinate: left, right and panel
   double repeatability_rad = 20e-6;
-  int points = 300;    ///< per look; fewer where the light leaves the pictures
-  bool relief = true;  ///< boxes up to 0.9 m on the floor, otherwise the bare floor
+  int points = 300;            ///< per look; fewer where the light leaves the pictures
+  bool relief = true;          ///< boxes up to 0.9 m on the floor, otherwise the bare floor
+  double box_height = 1;       ///< share of the boxes' height
+  bool drawn_cameras = false;  ///< cameras known only as drawn; else as calibrated with a board
 };
 
 /// What the camera calibration is off by, one standard deviation each; it is stated as the cameras' covariance.
@@ -80,7 +82,7 @@ struct Box {
 };
 
 /// About half of the floor within reach under boxes.
-inline std::vector<Box> boxes(std::uint64_t seed) {
+inline std::vector<Box> boxes(std::uint64_t seed, double share = 1) {
   Noise noise(seed, 0xb0);
   std::vector<Box> boxes;
   for (int k = 0; k < 60; ++k) {
@@ -88,7 +90,7 @@ inline std::vector<Box> boxes(std::uint64_t seed) {
     const double y = noise.uniform(-2, 2);
     const double width = noise.uniform(0.2, 0.7);
     const double length = noise.uniform(0.2, 0.7);
-    const double height = noise.uniform(0.05, 0.9);
+    const double height = share * noise.uniform(0.05, 0.9);
     boxes.push_back({{x, y, kFloorDepth - height}, {x + width, y + length, kFloorDepth}});
   }
   return boxes;
@@ -180,7 +182,8 @@ inline calib::steer::Observations observe(const IdealRig& rig, std::span<const E
                                           std::vector<Eigen::Vector2d>* true_latents = nullptr,
                                           std::uint64_t stream = 0) {
   calib::steer::Observations observations{.cameras = calibrated_cameras(rig, seed), .looks = {}};
-  const std::vector<ideal::Box> boxes = options.relief ? ideal::boxes(seed) : std::vector<ideal::Box>();
+  const std::vector<ideal::Box> boxes =
+      options.relief ? ideal::boxes(seed, options.box_height) : std::vector<ideal::Box>();
   const sim::optics::TrueRig& t = rig.truth.rig;
   const double stated = std::max(options.noise_px, 0.01);
   const Eigen::Matrix2d covariance = stated * stated * Eigen::Matrix2d::Identity();

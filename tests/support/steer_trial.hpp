@@ -17,6 +17,7 @@
 #include "calib/steer/predict.hpp"
 #include "calib/steer/refine.hpp"
 #include "calib/steer/solve.hpp"
+#include "calib/steer/without_board.hpp"
 #include "tests/support/drawn_rig.hpp"
 
 namespace raysteer::support {
@@ -91,12 +92,19 @@ class SteerTrial {
              const calib::steer::Options& solver = {})
       : board_(board), options_(options), seed_(seed), rig_(*draw_ideal(board.drawn.board, seed)) {
     if (options.relief) {
-      boxes_ = ideal::boxes(seed);
+      boxes_ = ideal::boxes(seed, options.box_height);
     }
     auto observations = observe(rig_, board.commands, options, seed);
     // As a session's looks: one of which next to nothing was seen is left out before the solve.
     std::erase_if(observations.looks, [](const calib::steer::Look& look) { return look.points.size() < 12; });
-    solution_.emplace(calib::steer::solve(observations, board.drawn.drawing, solver));
+    if (options.drawn_cameras) {
+      observations.cameras = board.drawn.cameras;
+      const calib::steer::KnownLength baseline{
+          .metres = rig_.cameras.devices[1].T_device_rig.t.norm(), .sigma_m = 0.5e-3, .ends = {}};
+      solution_.emplace(calib::steer::solve_without_board(observations, board.drawn.drawing, baseline, solver));
+    } else {
+      solution_.emplace(calib::steer::solve(observations, board.drawn.drawing, solver));
+    }
     if (*solution_) {
       by_z_ = Eigen::MatrixXd::Zero((*solution_)->camera_parameters(), 0);
     }

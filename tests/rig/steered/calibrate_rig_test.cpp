@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -53,7 +55,7 @@ TEST_P(SteeredRig, predicts_unseen_looks_and_puts_stations_where_they_belong) {
   EXPECT_LT(rig.at("held_out").at("p95_mm"), 4 * 0.8);
   EXPECT_LT(rig.at("truth").at("p95_px"), 0.55);
   EXPECT_LT(rig.at("truth").at("p95_mm"), 4 * 0.8);
-  EXPECT_GT(rig.at("whitened_rms"), 0.3);
+  EXPECT_GT(rig.at("whitened_rms"), 0.85);
   EXPECT_LT(rig.at("whitened_rms"), 1.15);
   EXPECT_TRUE(rig.at("tied_to_room"));
 
@@ -80,9 +82,75 @@ TEST_P(SteeredRig, predicts_unseen_looks_and_puts_stations_where_they_belong) {
   EXPECT_LT(scan.at("truth").at("surface_p95_m"), 4 * 3e-3);
 }
 
+// No board is ever shown: cameras start as the board file draws them, metres come from one length on the floor.
+TEST_P(SteeredRig, comes_out_of_relief_without_any_board) {
+  run({"plan", "looks", "--board", GetParam(), "--looks", "14", "--check", "3", "--out", in("plan")});
+  capture(data("relief.toml"), in("plan/looks.toml"), "looks");
+  const auto rig = run({"calibrate", "rig", in("looks"), "--cameras", "drawn", "--length", "23-115=4.580393", "--board",
+                        GetParam(), "--survey", data("survey.toml"), "--out", in("rig")});
+  ASSERT_TRUE(rig.is_object());
+  EXPECT_TRUE(rig.at("cameras").at("drawn"));
+  EXPECT_LT(rig.at("truth").at("focal_error"), 2e-3);
+  EXPECT_LT(rig.at("held_out").at("p95_px"), 0.6);
+  const auto tables = run({"bake", "--rig", in("rig"), "--stations", data("stations.toml"), "--out", in("tables")});
+  EXPECT_TRUE(tables.is_object());
+}
+
+/// The plan with a first look in which the scenes' target lies on the floor.
+std::string with_board_on_the_floor(const std::string& plan) {
+  std::ostringstream text;
+  text << std::ifstream(plan).rdbuf();
+  std::string whole = text.str();
+  whole.insert(whole.find("mirror_mrad"), "prepare = \"target away\"\n");
+  whole.insert(whole.find("[[look]]"),
+               "[[target]]\nkind = \"chessboard\"\ncolumns = 13\nrows = 8\nsquare_m = 0.055\nlooks = [\"board\"]\n\n"
+               "[[look]]\nname = \"board\"\nprepare = \"target on floor\"\nmirror_mrad = [0, 0]\n\n");
+  return whole;
+}
+
+TEST_P(SteeredRig, takes_looks_that_one_eye_saw_on_a_known_plane) {
+  capture("floor", "cameras", "cameras-session");
+  run({"calibrate", "cameras", in("cameras-session"), "--out", in("cameras")});
+  run({"plan", "looks", "--board", GetParam(), "--looks", "10", "--check", "2", "--out", in("plan")});
+  std::ofstream(in("plan.toml")) << with_board_on_the_floor(in("plan/looks.toml"));
+  capture("floor", in("plan.toml"), "looks");
+  // Something stands before the right eye: whatever is shown, it sees the same.
+  for (const char* look : {"look-02", "look-05", "look-08"}) {
+    const auto frames = std::filesystem::path(in("looks/right")) / look;
+    for (const auto& frame : std::filesystem::directory_iterator(frames)) {
+      if (frame.path().filename() != "000.rsf") {
+        std::filesystem::copy_file(frames / "000.rsf", frame.path(), std::filesystem::copy_options::overwrite_existing);
+      }
+    }
+  }
+  const std::vector<std::string> words{"calibrate",   "rig",     in("looks"), "--cameras",
+                                       in("cameras"), "--board", GetParam(),  "--plane"};
+  const auto with = [&](const std::string& look) {
+    auto all = words;
+    all.push_back(look);
+    return all;
+  };
+  const auto rig = run(with("board"));
+  ASSERT_TRUE(rig.is_object());
+  EXPECT_EQ(rig.at("one_eyed_looks"), 3);
+  EXPECT_EQ(rig.at("looks"), 10);
+  EXPECT_LT(rig.at("held_out").at("p95_px"), 0.55);
+  EXPECT_LT(rig.at("truth").at("p95_px"), 0.55);
+  // Where no board lies there is no plane, and drawn cameras cannot tell where it is.
+  EXPECT_EQ(raysteer(with("look-01")).exit_code, 1);
+  auto drawn = with("board");
+  drawn[4] = "drawn";
+  EXPECT_EQ(raysteer(drawn).exit_code, 2);
+}
+
 TEST(SteeredRigInput, is_refused_with_its_own_message) {
   EXPECT_EQ(raysteer({"calibrate", "rig", "nowhere", "--cameras", "nowhere", "--board", "mock-small"}).exit_code, 3);
   EXPECT_EQ(raysteer({"calibrate", "rig", "nowhere"}).exit_code, 2);
+  for (const char* length : {"3-7", "3=2.5", "3-3=2.5", "a-7=2", "3-7=0", "3-7=nan", ""}) {
+    const auto said =
+        raysteer({"calibrate", "rig", "nowhere", "--cameras", "drawn", "--board", "mock-small", "--length", length});
+    EXPECT_NE(said.exit_code, 0) << length;
+  }
   EXPECT_EQ(raysteer({"plan", "looks", "--board", "mock-small", "--looks", "4"}).exit_code, 1);
   EXPECT_EQ(raysteer({"bake", "--rig", "nowhere", "--stations", data("stations.toml")}).exit_code, 3);
   EXPECT_EQ(raysteer({"scan", "nowhere", "--rig", "nowhere"}).exit_code, 3);

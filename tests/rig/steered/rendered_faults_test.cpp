@@ -2,8 +2,10 @@
 // instead.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <functional>
+#include <string>
+#include <vector>
 
 #include "tests/support/technician.hpp"
 
@@ -72,6 +74,42 @@ TEST_F(RenderedFaults, a_mirror_that_was_knocked_half_way_is_not_averaged_away) 
                 {"--fault", "mirror.bump=5e-3@20s"});
   const auto error = refusal(rig_->in("knocked"), rig_->made("cameras"), "mock-small", survey());
   EXPECT_EQ(error.at("code"), "R0905") << error;
+}
+
+/// A plan's looks from number `first` on.
+std::string later_looks(const std::string& plan, std::size_t first) {
+  std::string text = plan.substr(0, plan.find("\n[[look]]"));
+  std::size_t at = plan.find("\n[[look]]");
+  for (std::size_t k = 0; k < first; ++k) {
+    at = plan.find("\n[[look]]", at + 1);
+  }
+  return text + plan.substr(at);
+}
+
+// By 10 mm along the floor, as between two looks of one capture: half-way through it, and before its last look.
+TEST_F(RenderedFaults, a_rig_that_was_pushed_between_two_looks_is_not_averaged_away) {
+  rig_->write("pushed.toml", replaced(support::read_all(Technician::room()), "[0, 0, 3.5]", "[0.01, 0, 3.5]"));
+  rig_->write("later.toml", later_looks(support::read_all(rig_->made("plan/looks.toml")), 7));
+  rig_->capture(rig_->in("pushed.toml"), rig_->in("later.toml"), rig_->in("after"));
+  std::vector<std::string> after;
+  for (const auto& look : fs::directory_iterator(rig_->in("after/left"))) {
+    after.push_back(look.path().filename());
+  }
+  ASSERT_EQ(after.size(), 6U);
+  const std::string last = "look-10";
+  ASSERT_NE(std::ranges::find(after, last), after.end());
+  for (const auto& moved : {after, std::vector{last}}) {
+    const std::string session = rig_->in("pushed-" + std::to_string(moved.size()));
+    fs::copy(rig_->made("looks"), session, fs::copy_options::recursive);
+    for (const std::string& look : moved) {
+      for (const std::string eye : {"/left/", "/right/"}) {
+        ASSERT_GT(fs::remove_all(session + eye + look), 0U);
+        fs::copy(rig_->in("after") + eye + look, session + eye + look);
+      }
+    }
+    const auto error = refusal(session, rig_->made("cameras"), "mock-small", survey());
+    EXPECT_EQ(error.at("code"), "R0905") << error;
+  }
 }
 
 }  // namespace

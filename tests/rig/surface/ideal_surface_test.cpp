@@ -40,19 +40,23 @@ struct Cloud {
   std::vector<Match> matches;
 };
 
-/// A look as the solved cameras measure it: every 12th pixel of the panel.
-Cloud scanned(const SteerTrial& trial, const calib::scene::TwoViews& views, const Vector2d& command, Noise& noise) {
-  constexpr int kStep = 12;
+sim::optics::LightPath path_of(const IdealRig& rig, const Vector2d& angles) {
+  return {rig.truth.rig, {Radians(angles.x()), Radians(angles.y())}};
+}
+
+/// A look as the solved cameras measure it: every `step`th pixel of the panel.
+Cloud scanned(const IdealRig& rig, const calib::scene::TwoViews& views, const Vector2d& command, int step,
+              Noise& noise) {
   Cloud cloud;
-  const auto path = trial.path(trial.rig().projector.angles(command));
-  const auto& panel = trial.board().drawn.drawing.projector.lens;
-  for (int j = 0; j < panel.height / kStep; ++j) {
-    for (int i = 0; i < panel.width / kStep; ++i) {
-      const auto p = lit(path, Vector2d(i * kStep, j * kStep));
+  const auto path = path_of(rig, rig.projector.angles(command));
+  const auto& panel = rig.projector.lens;
+  for (int j = 0; j < panel.height / step; ++j) {
+    for (int i = 0; i < panel.width / step; ++i) {
+      const auto p = lit(path, Vector2d(i * step, j * step));
       Match match{.i = static_cast<std::uint16_t>(i), .j = static_cast<std::uint16_t>(j)};
       bool seen = p.has_value();
       for (std::size_t eye = 0; eye < 2 && seen; ++eye) {
-        const auto& camera = trial.rig().truth.rig.cameras[eye];
+        const auto& camera = rig.truth.rig.cameras[eye];
         const auto q = camera.project(*p);
         const auto again = ideal::meet(camera.centre(), *p - camera.centre(), kBoxes);
         seen = q && again && (*again - *p).norm() < 1e-6 && q->minCoeff() > 0 && q->x() < camera.width - 1 &&
@@ -76,13 +80,14 @@ Cloud scanned(const SteerTrial& trial, const calib::scene::TwoViews& views, cons
   return cloud;
 }
 
-std::optional<host::rig::Scene> scan(const SteerTrial& trial, const calib::steer::InRoom& room, Noise& noise) {
+std::optional<host::rig::Scene> scan(const IdealRig& rig, const calib::steer::InRoom& room, Noise& noise,
+                                     int step = 12) {
   const auto views = calib::scene::two_views(room.solution.cameras, 0, 1);
   std::optional<calib::scene::Fusion> fusion;
   for (const Vector2d& about : {Vector2d(-0.35, -0.1), Vector2d(0.1, -0.1), Vector2d(-0.1, 0.2)}) {
     const Vector2d command =
         aimed(room.solution.projector, room.T_rig_room * Vector3d(about.x(), about.y(), kFloorDepth - 0.1));
-    const Cloud cloud = scanned(trial, *views, command, noise);
+    const Cloud cloud = scanned(rig, *views, command, step, noise);
     if (!fusion) {
       fusion.emplace(*calib::scene::cell_for(cloud.points, cloud.matches));
     }
@@ -129,11 +134,11 @@ struct Off {
 };
 
 /// Follows the true light of the corners' pixels, and of many pixels between them.
-void follow(const SteerTrial& trial, const calib::steer::InRoom& room, const host::rig::Scene& scene,
+void follow(const IdealRig& rig, const calib::steer::InRoom& room, const host::rig::Scene& scene,
             const host::rig::AimedStation& one, Noise& noise, Off& off) {
   const Vector2d angles =
-      trial.rig().projector.angles(*one.station.command_rad) + ideal::normals(noise, trial.options().repeatability_rad);
-  const auto path = trial.path(angles);
+      rig.projector.angles(*one.station.command_rad) + ideal::normals(noise, IdealOptions{}.repeatability_rad);
+  const auto path = path_of(rig, angles);
   for (std::size_t k = 0; k < 4; ++k) {
     const auto p = lit(path, one.panel[k]);
     ASSERT_TRUE(p) << one.station.name;
@@ -185,12 +190,12 @@ TEST_P(IdealSurface, pictures_lie_on_what_was_scanned_within_what_was_stated) {
     Noise noise(first + k, 0x5ca);
     const auto room = tied_to_room(trial, {}, noise);
     ASSERT_TRUE(room);
-    const auto scene = scan(trial, *room, noise);
+    const auto scene = scan(trial.rig(), *room, noise);
     ASSERT_TRUE(scene);
     const auto stations = host::rig::aim_stations(*room, wanted(), &*scene);
     ASSERT_TRUE(stations) << stations.error().message();
     for (const host::rig::AimedStation& one : *stations) {
-      follow(trial, *room, *scene, one, noise, off[one.station.name]);
+      follow(trial.rig(), *room, *scene, one, noise, off[one.station.name]);
     }
   }
   int within = 0;
@@ -201,18 +206,51 @@ TEST_P(IdealSurface, pictures_lie_on_what_was_scanned_within_what_was_stated) {
         "median / 95 %%\n",
         GetParam(), name.c_str(), quantile(one.corner_mm, 0.5), quantile(one.corner_mm, 1), one.within,
         one.corner_mm.size(), quantile(one.picture_mm, 0.5), quantile(one.picture_mm, 0.95));
-    // The box's height shows to an eye that looks from aside, and light from above does not care: two eyes tied to
-    // datums that are seen to 0.1 px know it to about 2 mm, and what is stated for it is too small (docs/scan.md).
+    // The box's height shows to an eye that looks from aside; how well it is known the next test asks of many rigs.
     const bool by_height = name == "seen";
+    EXPECT_LT(quantile(one.corner_mm, 0.5), by_height ? 2.5 : 0.7);
+    EXPECT_LT(quantile(one.corner_mm, 1), by_height ? 4 : 2.5);
+    EXPECT_LT(quantile(one.picture_mm, 0.5), by_height ? 2.5 : 1);
+    EXPECT_GT(one.picture_mm.size(), 100U * kRigs);
     within += by_height ? 0 : one.within;
     corners += by_height ? 0 : static_cast<int>(one.corner_mm.size());
-    EXPECT_LT(quantile(one.corner_mm, 0.5), by_height ? 4 : 0.7);
-    EXPECT_LT(quantile(one.corner_mm, 1), by_height ? 8 : 2.5);
-    EXPECT_LT(quantile(one.picture_mm, 0.5), by_height ? 4 : 1);
-    EXPECT_GT(one.picture_mm.size(), 100U * kRigs);
   }
   // A picture's corners miss alike: nine pictures say little of a share, but a bound that is far too small shows.
   EXPECT_GT(within, corners * 6 / 10);
+}
+
+// Two eyes know heights by their datums alone: with twelve seen to 0.1 px each, to 0.85 mm (one standard deviation, the
+// same over the whole room), so that three rigs say nothing. Of 100, whose corners miss alike, fewer than 89 % are
+// inside once in 10^4 runs where 97 % are (a mesh's sigma is that of its triangles' worst corner: on the safe side).
+TEST_P(IdealSurface, a_picture_for_an_eye_is_as_sure_as_stated) {
+  const auto board = drawn_rig(GetParam()).board;
+  const std::uint64_t first = seed();
+  constexpr std::uint64_t kRigs = 100;
+  auto only = wanted();
+  only.stations = {only.stations[1]};
+  Off off;
+  std::vector<double> bound_mm;
+  for (std::uint64_t mine = first; mine < first + kRigs; ++mine) {
+    const auto rig = draw_ideal(board, mine);
+    ASSERT_TRUE(rig) << rig.error().message();
+    Noise noise(mine, 0xe7e);
+    const auto room = tied_to_room(*rig, solution_of(*rig, mine), {}, noise);
+    ASSERT_TRUE(room);
+    const auto scene = scan(*rig, *room, noise, 24);
+    ASSERT_TRUE(scene);
+    const auto stations = host::rig::aim_stations(*room, only, &*scene);
+    ASSERT_TRUE(stations) << stations.error().message();
+    follow(*rig, *room, *scene, stations->front(), noise, off);
+    bound_mm.insert(bound_mm.end(), stations->front().bound_95_mm.begin(), stations->front().bound_95_mm.end());
+  }
+  const double inside = off.within / static_cast<double>(off.corner_mm.size());
+  std::printf("%s: corners %.2f / %.2f / %.2f mm median / 95 %% / worst, %.1f %% within the stated 95 %%: %.2f mm\n",
+              GetParam(), quantile(off.corner_mm, 0.5), quantile(off.corner_mm, 0.95), quantile(off.corner_mm, 1),
+              100 * inside, quantile(bound_mm, 0.5));
+  EXPECT_GT(inside, 0.89);
+  EXPECT_LT(quantile(off.corner_mm, 0.5), 0.95);
+  EXPECT_LT(quantile(off.corner_mm, 0.95), 2.1);
+  EXPECT_LT(quantile(bound_mm, 0.5), 1.75);
 }
 
 TEST(PlaceBound, is_the_corners_bound_where_a_known_plane_is_looked_at_along_its_normal) {
@@ -253,7 +291,7 @@ TEST(SurfaceStations, are_refused_where_the_scan_does_not_reach) {
   Noise noise(seed(), 1);
   const auto room = tied_to_room(trial, {}, noise);
   ASSERT_TRUE(room);
-  const auto scene = scan(trial, *room, noise);
+  const auto scene = scan(trial.rig(), *room, noise);
   ASSERT_TRUE(scene);
   auto stations = wanted();
   const auto without = host::rig::aim_stations(*room, stations);

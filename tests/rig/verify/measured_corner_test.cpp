@@ -17,20 +17,6 @@ namespace {
 
 using support::kFloorDepth;
 
-/// The rig as a calibration could have left it: cameras off by what their covariance says; the projector as it is, so
-/// that it is off in the room by what the cameras are.
-calib::steer::Solution solution_of(const support::IdealRig& rig, std::uint64_t seed) {
-  calib::steer::Solution solution;
-  solution.projector = rig.projector;
-  solution.cameras = support::calibrated_cameras(rig, seed);
-  solution.repeatability_rad = 20e-6;
-  const Eigen::Index cameras = solution.cameras.covariance.rows();
-  const Eigen::Index all = cameras + solution.projector_parameters();
-  solution.covariance = 1e-16 * Eigen::MatrixXd::Identity(all, all);
-  solution.covariance.topLeftCorner(cameras, cameras) = solution.cameras.covariance;
-  return solution;
-}
-
 /// A rectangle on the floor at a random place within reach.
 AimedStation station_of(const support::IdealRig& rig, const calib::steer::InRoom& room, Noise& noise) {
   AimedStation station;
@@ -76,7 +62,7 @@ TEST_P(Verified, corners_are_as_sure_as_stated) {
     const auto rig = support::draw_ideal(board, seed);
     ASSERT_TRUE(rig) << rig.error().message();
     Noise noise(seed, 0x7e);
-    const auto room = support::tied_to_room(*rig, solution_of(*rig, seed), {}, noise);
+    const auto room = support::tied_to_room(*rig, support::solution_of(*rig, seed), {}, noise);
     ASSERT_TRUE(room);
     const AimedStation station = station_of(*rig, *room, noise);
     std::vector<Eigen::Vector2d> latents;
@@ -133,7 +119,7 @@ TEST_P(Verified, a_station_that_few_points_fall_on_is_not_judged) {
   const std::uint64_t seed = support::seed();
   const auto rig = support::draw_ideal(board, seed);
   Noise noise(seed, 0x7e);
-  const auto room = support::tied_to_room(*rig, solution_of(*rig, seed), {}, noise);
+  const auto room = support::tied_to_room(*rig, support::solution_of(*rig, seed), {}, noise);
   ASSERT_TRUE(room);
   AimedStation station = station_of(*rig, *room, noise);
   const std::vector commands{*station.station.command_rad};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/bake/steering.hpp"
+#include "calib/model/steered_look.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/steered_rig.hpp"
 #include "tests/unit/bake/baked.hpp"
@@ -39,6 +40,46 @@ TEST(SteeringTable, lands_within_its_bound_at_a_hundred_thousand_places) {
     EXPECT_GT(commands, 30'000);
     EXPECT_LE(worst, parts.bound_m);
     EXPECT_GT(worst, 0.2 * parts.bound_m);
+  }
+}
+
+// The same, by a mirror whose truth is written here: it stands at (1 + gain) times its angles, and the offset on.
+TEST(SteeringTable, makes_up_for_a_mirror_that_drifted) {
+  std::mt19937_64 random(support::seed());
+  std::uniform_real_distribution<double> part(0, 1);
+  for (const std::string board : {"mock-galvo", "mock-head"}) {
+    const support::SteeredRig rig = support::steered_rig(board, random);
+    const model::Pose T_rig_floor = support::floor_pose(random);
+    const MirrorDrift drift{.offset_rad = {1.5e-3, -1e-3}, .gain = {2e-3, -3e-3}};
+    const proto::lut::SteeringTable table = valid(bake_steering(
+        rig.projector,
+        {.T_frame_plane = T_rig_floor, .T_rig_plane = T_rig_floor, .drift = drift, .bound_m = 2e-4, .farthest_m = 8}));
+    const auto& parts = table.parts();
+    const Eigen::Vector2d middle = panel_middle(rig.projector);
+    double worst = 0;
+    double without = 0;
+    int commands = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const proto::lut::PlanePoint place{parts.origin.x + part(random) * parts.spacing_m * (parts.columns - 1),
+                                         parts.origin.y + part(random) * parts.spacing_m * (parts.rows - 1)};
+      const auto command = table.command(place);
+      if (!command) {
+        continue;
+      }
+      const Eigen::Vector2d told(command->axis1_rad, command->axis2_rad);
+      const Eigen::Vector2d means = rig.projector.angles(told);
+      const Eigen::Vector2d latent = drift.offset_rad + drift.gain.cwiseProduct(means);
+      const model::SteeredLook stands(rig.projector, told, latent);
+      const auto x = stands.project(T_rig_floor * Eigen::Vector3d(place.x, place.y, 0));
+      const auto as_told = rig.projector.at(told).project(T_rig_floor * Eigen::Vector3d(place.x, place.y, 0));
+      ASSERT_TRUE(x && as_told);
+      worst = std::max(worst, (*x - middle).norm());
+      without = std::max(without, (*as_told - middle).norm());
+      ++commands;
+    }
+    EXPECT_GT(commands, 1500);
+    EXPECT_LT(worst, 0.5) << board << ", px: a fifth of a millimetre is less";
+    EXPECT_GT(without, 3) << board << ", px: the drift";
   }
 }
 

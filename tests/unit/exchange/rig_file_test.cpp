@@ -80,7 +80,13 @@ RoomTie room(const Solution& solution) {
   return tie;
 }
 
-const RigMeta kMeta{.session = "looks", .board = "mock-galvo", .verdict = "good", .whitened_rms = 1.01, .looks = 16};
+const RigMeta kMeta{.session = "looks",
+                    .board = "mock-galvo",
+                    .verdict = "good",
+                    .whitened_rms = 1.01,
+                    .looks = 16,
+                    .survey = "hall",
+                    .survey_id = survey_id("a survey")};
 
 std::string text() { return to_toml(solution(), room(solution()), kMeta); }
 
