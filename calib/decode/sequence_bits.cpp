@@ -18,6 +18,7 @@ constexpr int kLeastEdges = 25;
 // sets, 2026), an exchanged bit as much of the opposite; a few false edges in places without contrast come out in
 // between.
 constexpr double kClear = 0.75;
+constexpr double kMostEdges = 0.8;
 // All entries together, weighted: 0.96 and more in the public sets.
 constexpr double kLeastCoherent = 0.85;
 constexpr double kMostOutside = 0.05;
@@ -83,6 +84,19 @@ std::optional<std::vector<int>> find_inverted(const BitTable& table, int& told) 
   return inverted;
 }
 
+// At nearly all edges of bit k, and k alone changes there, every finer bit reads what it should: k is what it says,
+// however many of a finer bit's edges happen to run between the tiles (stripes as wide as tiles are apart).
+bool is_vouched_for(const BitTable& table, int k) {
+  const auto row = static_cast<std::size_t>(k);
+  for (int j = table.finest; j < k; ++j) {
+    const bool most = table.seen[row][static_cast<std::size_t>(j)] >= kMostEdges * table.changes[row];
+    if (!most || reading_at_edges(table, k, j) != expected(k, j)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // A coarse bit that changes more often than a finer one does not show what it should. One edge more is fair: which
 // edges are in view is chance, and one that runs along a row of tiles meets all of them or none; and the finest bits
 // may be lost in blur, so that only the coarser half is judged.
@@ -92,7 +106,8 @@ std::optional<int> too_busy(const BitTable& table) {
   const double one_edge = std::max(0.003 * table.neighbours, row_of_tiles);
   for (int k = table.bits - 1; k > std::max(table.bits / 2, table.finest + 1); --k) {
     for (int j = table.finest + 1; j < k; ++j) {
-      if (table.changes[static_cast<std::size_t>(k)] > 1.5 * table.changes[static_cast<std::size_t>(j)] + one_edge) {
+      if (table.changes[static_cast<std::size_t>(k)] > 1.5 * table.changes[static_cast<std::size_t>(j)] + one_edge &&
+          !is_vouched_for(table, k)) {
         return k;
       }
     }

@@ -1,6 +1,7 @@
 #include "calib/steer/depth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -92,7 +93,7 @@ Status check_depth(const Depth& depth) {
   if (depth.angle_rad < kLeastAngle) {
     return fail(RCode::kTooLittleParallax,
                 "the eyes' rays meet at " + text(depth.angle_rad * 180 / std::numbers::pi) +
-                    " degrees; expected eyes so far apart that depth shows, 3 degrees and more: mount them farther "
+                    " degrees; expected a third of a degree at least, better 3 degrees and more: mount them farther "
                     "apart, or give --cameras a calibration");
   }
   if (depth.all.flat()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "calib/model/pose.hpp"
@@ -12,8 +13,9 @@ namespace {
 
 constexpr std::size_t kFewest = 8;
 constexpr int kRounds = 30;
-constexpr double kMost = 20;  // a squared residual counts up to kMost (r - d)
-constexpr double kBound = 3;  // whitened: from here on a pair pulls less (Cauchy)
+constexpr double kMost = 20;       // a squared residual counts up to kMost (r - d)
+constexpr double kMostWild = 0.1;  // share of pairs
+constexpr double kBound = 3;       // whitened: from here on a pair pulls less (Cauchy)
 
 double weight(double e2) { return 1 / (1 + e2 / (kBound * kBound)); }
 
@@ -191,9 +193,17 @@ Gric plane_or_depth(std::span<const ViewPair> pairs, const Eigen::Matrix3d& F, L
   if (pairs.size() < kFewest) {
     return {.points = pairs.size()};
   }
-  return {.plane = gric(fitted(Homography(pairs, lenses), pairs), pairs, 2, lenses == Lenses::kOpen ? 16 : 8),
-          .depth = gric(fitted(Fundamental(F), pairs), pairs, 3, 7),
-          .points = pairs.size()};
+  // A pair off its own ray's line is a wild match, which no plane explains either: no sign of depth. Where many are,
+  // it is F that is wrong.
+  const Fundamental depth = fitted(Fundamental(F), pairs);
+  std::vector<ViewPair> matched;
+  std::ranges::copy_if(pairs, std::back_inserter(matched),
+                       [&](const ViewPair& pair) { return depth.residual(pair).squaredNorm() < kMost; });
+  const bool few_wild = static_cast<double>(matched.size()) > (1 - kMostWild) * static_cast<double>(pairs.size());
+  const std::span<const ViewPair> judged = few_wild && matched.size() >= kFewest ? matched : pairs;
+  return {.plane = gric(fitted(Homography(judged, lenses), judged), judged, 2, lenses == Lenses::kOpen ? 16 : 8),
+          .depth = gric(depth, judged, 3, 7),
+          .points = judged.size()};
 }
 
 Eigen::Matrix3d fundamental(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {

@@ -52,7 +52,7 @@ struct Problem {
 };
 
 /// Triangulates all points by open cameras at z, where the problem is linear about from then on. A point whose rays no
-/// longer meet stays where it was and pulls nowhere.
+/// longer meet stays where it was and costs much.
 void see_again(Problem& problem, const Eigen::VectorXd& z);
 
 /// How residuals are counted: |whitened| / scale beyond `bound` counts linearly (Huber), or by its logarithm (Cauchy):

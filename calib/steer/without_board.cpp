@@ -1,10 +1,13 @@
 #include "calib/steer/without_board.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "calib/steer/check.hpp"
 #include "calib/steer/depth.hpp"
 #include "calib/steer/eye_points.hpp"
 
@@ -13,27 +16,43 @@ namespace {
 
 constexpr int kElsewhere = 3;        // starts near the drawing, until one fits
 constexpr double kApart = 4;         // joint standard deviations of a focal length
+constexpr double kSeen = 0.6;        // share of a look's points that drawn cameras must see
+constexpr double kMostOff = 5;       // standard deviations of a mount that a known length may move an eye by
 constexpr double kApartForSure = 3;  // standard deviations of a mount: closer eyes may as well stand in one place
 
+/// The known length in the cameras' metres, and what it is off by where the cameras are.
 struct Measured {
   double metres = 0;
   double variance = 0;  ///< of what both eyes saw of its ends
+  Eigen::RowVectorXd by_cameras;
 };
 
-/// The known length in the cameras' metres; no value where an eye does not see an end.
+/// No value where an eye does not see an end.
 std::optional<Measured> measured(const model::Rig& cameras, const KnownLength& known) {
+  const Eigen::Index n = cameras.count(0) + cameras.count(1);
   if (!known.ends) {
-    return Measured{.metres = cameras.devices[1].T_device_rig.t.norm()};
+    const Eigen::Vector3d& t = cameras.devices[1].T_device_rig.t;
+    Measured apart{.metres = t.norm(), .by_cameras = Eigen::RowVectorXd::Zero(n)};
+    apart.by_cameras.tail<3>() = t.normalized().transpose();
+    return apart;
   }
-  const Eigen::MatrixXd held = Eigen::MatrixXd::Zero(cameras.count(0) + cameras.count(1), 0);
-  const Eyes eyes(cameras, held);
-  const auto a = eyes.see((*known.ends)[0]);
-  const auto b = eyes.see((*known.ends)[1]);
+  const Eigen::MatrixXd each = Eigen::MatrixXd::Identity(n, n);
+  const Eyes eyes(cameras, each);
+  std::array<LitPoint, 2> ends = *known.ends;
+  for (LitPoint& end : ends) {
+    for (Eigen::Matrix2d& covariance : end.cov_q) {
+      covariance.diagonal().array() += known.ends_off_px * known.ends_off_px;
+    }
+  }
+  const auto a = eyes.see(ends[0]);
+  const auto b = eyes.see(ends[1]);
   if (!a || !b) {
     return std::nullopt;
   }
-  const Eigen::Vector3d along = (b->p - a->p).normalized();
-  return Measured{.metres = (b->p - a->p).norm(), .variance = along.dot((a->covariance + b->covariance) * along)};
+  const Eigen::RowVector3d along = (b->p - a->p).normalized().transpose();
+  return Measured{.metres = (b->p - a->p).norm(),
+                  .variance = along.dot((a->covariance + b->covariance) * along.transpose()),
+                  .by_cameras = along * (b->p_by_z - a->p_by_z)};
 }
 
 Status check(const KnownLength& known) {
@@ -47,18 +66,58 @@ Status check(const KnownLength& known) {
   return ok();
 }
 
-/// Looks of which even the drawn cameras see enough: of a few points at a picture's rim hardly one may be left.
-std::vector<Look> seen_by(const Observations& drawn) {
+/// Looks of which even the drawn cameras see enough: of a few points at a picture's rim hardly one may be left, and
+/// starts try a part of the points only.
+std::vector<Look> seen_by(const Observations& drawn, std::vector<std::string>& left_out) {
   const Eigen::MatrixXd held = Eigen::MatrixXd::Zero(drawn.cameras.count(0) + drawn.cameras.count(1), 0);
   const Eyes eyes(drawn.cameras, held);
   std::vector<Look> looks;
   for (const Look& look : drawn.looks) {
     const auto seen = std::ranges::count_if(look.points, [&](const LitPoint& p) { return eyes.see(p).has_value(); });
-    if (static_cast<std::size_t>(seen) >= 2 * kFewestPoints) {
+    const auto share = static_cast<double>(seen) / static_cast<double>(std::max<std::size_t>(1, look.points.size()));
+    if (static_cast<std::size_t>(seen) >= 2 * kFewestPoints && share >= kSeen) {
       looks.push_back(look);
+    } else {
+      left_out.push_back(look.name);
     }
   }
   return looks;
+}
+
+/// The looks with the points that the solve did not take for mistakes; it keeps their order.
+std::vector<Look> kept(const std::vector<Look>& looks, const Solution& solution) {
+  std::vector<Look> kept;
+  for (const SolvedLook& solved : solution.looks) {
+    const auto look = std::ranges::find(looks, solved.name, &Look::name);
+    kept.push_back(*look);
+    kept.back().points.clear();
+    auto residual = solved.points.begin();
+    for (const LitPoint& point : look->points) {
+      if (residual != solved.points.end() && residual->x == point.x) {
+        if (residual->used) {
+          kept.back().points.push_back(point);
+        }
+        ++residual;
+      }
+    }
+  }
+  return kept;
+}
+
+std::string millimetres(double metres) {
+  const std::string text = std::to_string(1e3 * metres);
+  return text.substr(0, text.find('.') + 2) + " mm";
+}
+
+/// Where a length would put the eyes, and where they are drawn.
+Status check_baseline(const KnownLength& known, double implied, double drawn, double mount_m) {
+  if (std::abs(implied - drawn) <= kMostOff * mount_m) {
+    return ok();
+  }
+  return fail(RCode::kScaleWrong, "a known length of " + millimetres(known.metres) + " puts the eyes " +
+                                      millimetres(implied) + " apart; they are drawn " + millimetres(drawn) +
+                                      " apart, to " + millimetres(mount_m) +
+                                      ": is it in metres, and between the right places?");
 }
 
 /// Every start that fits must lead to the same cameras: one from elsewhere is tried, with few points.
@@ -99,7 +158,7 @@ bool cause_may_be_depth(RCode code) {
 
 }  // namespace
 
-model::Rig drawn_cameras(const model::Rig& drawn, const Tolerance& tolerance, double along_m) {
+model::Rig drawn_cameras(const model::Rig& drawn, const Tolerance& tolerance) {
   model::Rig rig = drawn;
   const int all = rig.count(0) + rig.count(1);
   rig.covariance = Eigen::MatrixXd::Zero(all, all);
@@ -116,11 +175,8 @@ model::Rig drawn_cameras(const model::Rig& drawn, const Tolerance& tolerance, do
     block.diagonal().segment(4, terms).setConstant(std::pow(tolerance.distortion, 2));
     block.diagonal().segment<2>(6).setConstant(std::pow(tolerance.tangential, 2));
     if (i > 0) {
-      const Eigen::Vector3d along = eye.T_device_rig.t.normalized();
-      const double across = tolerance.mount_m * tolerance.mount_m;
       block.diagonal().segment<3>(4 + terms).setConstant(tolerance.mount_rad * tolerance.mount_rad);
-      block.bottomRightCorner<3, 3>() =
-          across * Eigen::Matrix3d::Identity() + (along_m * along_m - across) * along * along.transpose();
+      block.diagonal().tail<3>().setConstant(tolerance.mount_m * tolerance.mount_m);
     }
     for (const char* name : {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}) {
       if (static_cast<int>(rig.parameters.size()) < rig.offset(i) + 4 + terms) {
@@ -145,13 +201,23 @@ Result<Solution> solve_without_board(const Observations& drawn, const Drawing& d
     RAYSTEER_TRY(check(*known));
   }
   const double apart = drawn.cameras.devices[1].T_device_rig.t.norm();
-  if (!(apart > kApartForSure * drawing.tolerance.mount_m)) {
+  if (apart <= kApartForSure * drawing.tolerance.mount_m) {
     return fail(RCode::kTooLittleParallax, "the eyes are drawn " + std::to_string(1e3 * apart) + " mm apart, each to " +
                                                std::to_string(1e3 * drawing.tolerance.mount_m) +
                                                " mm: mount them farther apart, or give --cameras a calibration");
   }
-  Observations observations{.cameras = drawn_cameras(drawn.cameras, drawing.tolerance, drawing.tolerance.mount_m),
-                            .looks = seen_by(drawn)};
+  Observations observations{.cameras = drawn_cameras(drawn.cameras, drawing.tolerance), .looks = {}};
+  std::vector<std::string> left_out;
+  for (const Look& look : drawn.looks) {
+    if (look.points.size() < kFewestPoints) {
+      left_out.push_back(look.name);
+    } else {
+      observations.looks.push_back(look);
+    }
+  }
+  // Before any is left out: a pixel that is no number is not seen either.
+  RAYSTEER_TRY(check(observations, drawing));
+  observations.looks = seen_by(observations, left_out);
   // Mistakes are looked for with calibrated cameras only.
   Options open = options;
   open.open_cameras = true;
@@ -163,23 +229,37 @@ Result<Solution> solve_without_board(const Observations& drawn, const Drawing& d
     }
     return solution;
   }
-  RAYSTEER_TRY(check_depth(depth_of(drawn.looks, solution->cameras, std::max(1.0, solution->whitened_rms)), *solution));
+  RAYSTEER_TRY(check_depth(
+      depth_of(kept(observations.looks, *solution), solution->cameras, std::max(1.0, solution->whitened_rms)),
+      *solution));
   RAYSTEER_TRY(check_alone(*solution, observations, drawing, open));
   if (!known) {
+    solution->left_out = std::move(left_out);
     return solution;
   }
-  // The length is put in through the distance between the eyes, about the cameras as they came out: where the right
-  // eye really stands is known by then, so that the distance is one number along one direction.
+  // Scale alone is still off by per cents, and all else scales with it: then the length is one more measurement of the
+  // cameras, linear about them, which narrows their tolerances along its own slope (a Kalman step whose mean stays).
   const auto first = measured(solution->cameras, *known);
   if (!first) {
     return fail(RCode::kTooFewCorrespondences, "both eyes do not see both ends of the known length");
   }
-  const double scale = known->metres / first->metres;
-  const double sigma = std::hypot(known->sigma_m, scale * std::sqrt(first->variance)) / known->metres;
-  model::Pose& right = observations.cameras.devices[1].T_device_rig;
-  right.t = scale * solution->cameras.devices[1].T_device_rig.t;
-  observations.cameras = drawn_cameras(observations.cameras, drawing.tolerance, sigma * right.t.norm());
-  return solve(observations, drawing, open);
+  model::Rig scaled = solution->cameras;
+  scaled.devices[1].T_device_rig.t *= known->metres / first->metres;
+  RAYSTEER_TRY(check_baseline(*known, scaled.devices[1].T_device_rig.t.norm(), apart, drawing.tolerance.mount_m));
+  const auto length = measured(scaled, *known);
+  if (!length) {
+    return fail(RCode::kTooFewCorrespondences, "both eyes do not see both ends of the known length");
+  }
+  observations.cameras = drawn_cameras(scaled, drawing.tolerance);
+  Eigen::MatrixXd& covariance = observations.cameras.covariance;
+  const Eigen::VectorXd shared = covariance * length->by_cameras.transpose();
+  const double variance = known->sigma_m * known->sigma_m + length->variance + length->by_cameras.dot(shared);
+  covariance -= (shared * shared.transpose() / variance).eval();
+  auto scaled_solution = solve(observations, drawing, open);
+  if (scaled_solution) {
+    scaled_solution->left_out = std::move(left_out);
+  }
+  return scaled_solution;
 }
 
 }  // namespace raysteer::calib::steer

@@ -12,9 +12,8 @@
 
 namespace raysteer::calib::steer {
 
-/// `drawn` (left, right) with the drawing's tolerances as covariance. `along_m`: standard deviation of the distance
-/// between the eyes; their right one's place across it has the mount's.
-model::Rig drawn_cameras(const model::Rig& drawn, const Tolerance& tolerance, double along_m);
+/// `drawn` (left, right) with the drawing's tolerances as covariance.
+model::Rig drawn_cameras(const model::Rig& drawn, const Tolerance& tolerance);
 
 /// One length that somebody measured.
 struct KnownLength {
@@ -22,6 +21,9 @@ struct KnownLength {
   double sigma_m = 0;
   /// Between two places that both eyes saw (LitPoint::x is not used); no value: between the two eyes.
   std::optional<std::array<LitPoint, 2>> ends;
+  /// How far what was seen of an end may be off the place itself, one standard deviation: the middle of a round datum's
+  /// ellipse is not its centre's picture, by a tenth of a pixel for discs of 0.1 m.
+  double ends_off_px = 0.1;
 };
 
 /// `drawn`: its cameras have no covariance yet. Errors: those of solve(), kNotFinite and kBadValue (the length),

@@ -25,6 +25,10 @@ std::string who(const Session& session, std::size_t camera, int look) {
          session.manifest().looks[static_cast<std::size_t>(look)].name + "'";
 }
 
+Status check_scale(const TargetSpec& target) {
+  return target.square_m > 0 ? ok() : fail(RCode::kTargetScaleMissing, "[target] has no square_m");
+}
+
 // The looks that show the target, and the target. Every look of one calibration shows the same one.
 struct Plan {
   TargetSpec target;
@@ -43,9 +47,7 @@ Result<Plan> plan_of(const Session& session) {
       plan.looks.push_back(look);
     }
   }
-  if (!(plan.target.square_m > 0)) {
-    return fail(RCode::kTargetScaleMissing, "[target] has no square_m");
-  }
+  RAYSTEER_TRY(check_scale(plan.target));
   return plan;
 }
 
@@ -104,16 +106,21 @@ Error plainest(Error error, ImageView<const std::uint8_t> frame) {
   return error;
 }
 
-// Boards of one camera in all looks, found together. Loading and finding take about as long as each other's half.
-Result<std::vector<Result<target::Detection>>> detect_camera(const Session& session, const Plan& plan, int camera,
-                                                             const Tick& tick) {
+struct Place {
+  int camera = 0;
+  int look = 0;
+};
+
+// The board in these places' lit frames, found together. Loading and finding take about as long as each other's half.
+Result<std::vector<Result<target::Detection>>> detect_in(const Session& session, const TargetSpec& target,
+                                                         const std::vector<Place>& places, const Tick& tick) {
   const int lit = lit_frame(session.manifest().sequence);
   std::vector<Image<std::uint8_t>> frames;
-  for (std::size_t i = 0; i < plan.looks.size(); ++i) {
-    if (tick && !tick(0.5 * static_cast<double>(i) / static_cast<double>(plan.looks.size()))) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (tick && !tick(0.5 * static_cast<double>(i) / static_cast<double>(places.size()))) {
       return fail(RCode::kCancelled);
     }
-    auto frame = load_8_bit(session, {camera, plan.looks[i], lit});
+    auto frame = load_8_bit(session, {places[i].camera, places[i].look, lit});
     if (!frame) {
       return frame.error();
     }
@@ -123,17 +130,27 @@ Result<std::vector<Result<target::Detection>>> detect_camera(const Session& sess
   for (const auto& frame : frames) {
     views.push_back(frame.view());
   }
-  auto found = target::detect_all(plan.target, views);
+  auto found = target::detect_all(target, views);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!found[i]) {
       found[i] = with_context(plainest(found[i].error(), views[i]),
-                              who(session, static_cast<std::size_t>(camera), plan.looks[i]));
+                              who(session, static_cast<std::size_t>(places[i].camera), places[i].look));
     }
   }
   if (tick && !tick(1)) {
     return fail(RCode::kCancelled);
   }
   return found;
+}
+
+// Boards of one camera in all looks.
+Result<std::vector<Result<target::Detection>>> detect_camera(const Session& session, const Plan& plan, int camera,
+                                                             const Tick& tick) {
+  std::vector<Place> places;
+  for (const int look : plan.looks) {
+    places.push_back({camera, look});
+  }
+  return detect_in(session, plan.target, places, tick);
 }
 
 // More than half of what one device should have seen failed: then it is the set, not a view.
@@ -186,6 +203,28 @@ void add(Gathered& gathered, int camera, std::vector<Result<target::Detection>> 
 }
 
 }  // namespace
+
+Result<BoardInLook> find_board(const Session& session, int look, const Tick& tick) {
+  const std::string& name = session.manifest().looks[static_cast<std::size_t>(look)].name;
+  const TargetSpec* target = session.manifest().target_of(name);
+  if (target == nullptr) {
+    return fail(RCode::kMissingKey, "no [target] of the session is shown in look '" + name + "'");
+  }
+  RAYSTEER_TRY(check_scale(*target));
+  std::vector<Place> places;
+  for (int camera = 0; camera < session.cameras(); ++camera) {
+    places.push_back({camera, look});
+  }
+  auto found = detect_in(session, *target, places, tick);
+  RAYSTEER_TRY(found);
+  BoardInLook board{.target = *target, .cameras = *std::move(found)};
+  for (const auto& detection : board.cameras) {
+    if (detection) {
+      board.target.layout = detection->layout;
+    }
+  }
+  return board;
+}
 
 Result<Gathered> gather_cameras(const Session& session, const Tick& tick) {
   const auto plan = plan_of(session);

@@ -7,6 +7,7 @@
 
 #include "calib/solve/observations.hpp"
 #include "calib/solve/solution.hpp"
+#include "calib/target/target_geometry.hpp"
 #include "hal/base/result.hpp"
 #include "host/session/session.hpp"
 
@@ -32,8 +33,19 @@ struct Gathered {
 /// kTargetNotFound, kWrongTarget, kMirroredTarget when most frames fail; those of Session::load; kCancelled.
 Result<Gathered> gather_cameras(const session::Session& session, const Tick& tick = {});
 
-/// The same with the projector as last device: decoded pixels and the panel px of the corners. Errors: also those of
-/// decode_look; kTooFewCorrespondences when most looks have too few; kBadSequence when one axis is missing.
+/// The board of one look.
+struct BoardInLook {
+  TargetSpec target;                                      ///< target.layout is the one found
+  std::vector<Result<calib::target::Detection>> cameras;  ///< one a camera: its corners, or why it sees no board
+};
+
+/// The target that look number `look` shows, in every camera by itself: one that sees no board fails alone. Errors:
+/// kMissingKey (the look shows none), kTargetScaleMissing, those of Session::load, kCancelled.
+Result<BoardInLook> find_board(const session::Session& session, int look, const Tick& tick = {});
+
+/// The same as gather_cameras() with the projector as last device: decoded pixels and the panel px of the corners.
+/// Errors: also those of decode_look; kTooFewCorrespondences when most looks have too few; kBadSequence when one axis
+/// is missing.
 Result<Gathered> gather_projector(const session::Session& session, const Tick& tick = {});
 
 /// Says in the solution's views why those were left out in which no board was found.

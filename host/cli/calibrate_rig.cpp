@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,15 +13,15 @@
 #include "calib/steer/solve.hpp"
 #include "calib/steer/without_board.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/rig_cameras.hpp"
+#include "host/cli/rig_plane.hpp"
 #include "host/cli/rig_result.hpp"
-#include "host/exchange/calibration_file.hpp"
+#include "host/cli/rig_words.hpp"
 #include "host/exchange/rig_file.hpp"
 #include "host/exchange/write_file.hpp"
 #include "host/pretend/truth_file.hpp"
 #include "host/rig/drawing.hpp"
 #include "host/rig/gather.hpp"
-#include "host/rig/known_length.hpp"
-#include "host/rig/known_plane.hpp"
 #include "host/rig/read_files.hpp"
 #include "host/rig/room.hpp"
 #include "host/rig/stations.hpp"
@@ -36,19 +35,10 @@ using calib::steer::Evaluation;
 using calib::steer::Look;
 using calib::steer::Solution;
 
-/// Instead of a calibration of the cameras.
-constexpr std::string_view kDrawn = "drawn";
 /// Looks of this name are never solved with, but predicted.
 constexpr std::string_view kCheck = "check";
 /// Without any such look, every so manieth is taken.
 constexpr std::size_t kEvery = 4;
-
-// docs/decisions/0005: what a look that was not calibrated may miss by, 95 %, on the surface.
-constexpr double kGoodMm = 1;
-constexpr double kUsableMm = 2.5;
-
-/// The rig stands still: so many looks at its datums are enough.
-constexpr int kDatumLooks = 8;
 
 struct Parts {
   std::vector<Look> solved;
@@ -64,10 +54,6 @@ Parts split(std::vector<Look> looks) {
     (held_out ? parts.held_out : parts.solved).push_back(std::move(looks[k]));
   }
   return parts;
-}
-
-Json accuracy(double median_px, double p95_px, double median_mm, double p95_mm) {
-  return {{"median_px", median_px}, {"p95_px", p95_px}, {"median_mm", median_mm}, {"p95_mm", p95_mm}};
 }
 
 class CalibrateRig : public Command {
@@ -95,202 +81,172 @@ class CalibrateRig : public Command {
 
   void declare(Options& options) override {
     options.argument("SESSION", &session_, "session file or its folder").required();
-    options
-        .option("--cameras", "FILE", &cameras_,
-                "calibration of the cameras, or its folder; 'drawn': none, cameras are solved too")
-        .required();
+    cameras_.declare(options);
     options.option("--board", "FILE", &board_, "board file, or an installed one's name: how the rig is drawn")
         .required();
-    options.option("--baseline", "METRES", &baseline_, "with '--cameras drawn': measured from lens to lens");
-    options.option("--length", "A-B=METRES", &length_,
-                   "with '--cameras drawn': measured between the datums coded A and B");
-    options.option("--plane", "LOOK", &plane_,
-                   "look in which the session's board lies on the plane that all light "
-                   "falls on; looks that one eye sees count then too");
+    plane_.declare(options);
     options.option("--survey", "FILE", &survey_, "where the room's datums are, or an installed survey's name");
     options.option("--previous", "FILE", &previous_, "earlier calibration of this rig, or its folder, to compare with");
     options.option("--stations", "FILE", &stations_, "stations whose bounds are wanted, or an installed file's name");
   }
 
   Result<ExitCode> run(Context& context) override {
+    RAYSTEER_TRY(cameras_.read_length());
     const auto session = session::Session::open(session_, context.frames_root());
     RAYSTEER_TRY(session);
     const auto board = rig::read_board(board_);
     RAYSTEER_TRY(board);
-    const auto drawing = rig::drawing_of(*board);
-    RAYSTEER_TRY(drawing);
-    const auto length = known_length();
-    RAYSTEER_TRY(length);
-    const auto cameras = this->cameras(*board);
-    RAYSTEER_TRY(cameras);
-    const auto surveyed = see_room(context, *session);
-    RAYSTEER_TRY(surveyed);
-    const auto options = gather_options(context, *session, *cameras);
-    RAYSTEER_TRY(options);
-    auto gathered = rig::gather(*session, *cameras, *options, context.stage("decoding looks"));
-    RAYSTEER_TRY(gathered);
-    for (const rig::MissedLook& missed : gathered->missed) {
-      context.note(fmt::format("look '{}' left out [{}]: {}", missed.name, to_string(missed.error.rcode),
-                               missed.error.message()));
-    }
-    context.json()["one_eyed_looks"] = gathered->one_eyed.size();
-    for (const std::string& name : gathered->one_eyed) {
-      context.note(fmt::format("look '{}': seen by one eye, placed on the plane of look '{}'", name, plane_));
-    }
-    Parts parts = split(std::move(gathered->observations.looks));
-    gathered->observations.looks = std::move(parts.solved);
-    const auto known = found(context, *session, *length);
-    RAYSTEER_TRY(known);
-    const auto solving = context.stage("solving");
-    const auto solution = is_drawn() ? calib::steer::solve_without_board(gathered->observations, *drawing, *known)
-                                     : calib::steer::solve(gathered->observations, *drawing);
-    RAYSTEER_TRY(solution);
-    const double drawn_rad = drawing->tolerance.repeatability_rad;
-    if (!gathered->one_eyed.empty() && solution->repeatability_rad > calib::steer::kMostScatter * drawn_rad) {
-      return fail(
-          RCode::kRigNotSolved,
-          fmt::format("the mirror would repeat to {:.0f} urad, drawn are {:.0f}: does all light of the looks that "
-                      "one eye saw fall on the plane of look '{}'?",
-                      1e6 * solution->repeatability_rad, 1e6 * drawn_rad, plane_));
-    }
-    RAYSTEER_TRY(Context::poll());
-    const auto evaluation = calib::steer::evaluate(*solution, parts.held_out);
-    RAYSTEER_TRY(evaluation);
-    std::optional<rig::InRoom> room;
-    if (*surveyed) {
-      auto tied = rig::tie_to_room(*solution, (*surveyed)->survey, (*surveyed)->views);
-      RAYSTEER_TRY(tied);
-      room = *std::move(tied);
-    }
+    const auto done = calibrate(context, *session, *board);
+    RAYSTEER_TRY(done);
     const auto truth = pretend::truth_beside(session->file());
     RAYSTEER_TRY(truth);
     std::optional<rig::TruthError> error;
     if (*truth && (*truth)->projector) {
-      auto found = rig::truth_error(*solution, **truth, parts.held_out);
+      auto found = rig::truth_error(done->solution, **truth, done->held_out);
       RAYSTEER_TRY(found);
       error = *found;
     }
-    const std::string verdict = evaluation->p95_mm <= kGoodMm     ? "good"
-                                : evaluation->p95_mm <= kUsableMm ? "usable"
-                                                                  : "redo";
-    const auto stated = room ? std::optional(tie_of(*room)) : std::nullopt;
-    const auto& final_solution = room ? room->rig.solution : *solution;
-    const PlacedRig now = placed(*solution, room, exchange::rig_id(final_solution, stated));
-    const auto aimed = aim(now);
-    RAYSTEER_TRY(aimed);
-    report::RigResult result;
-    result.session = session_;
-    result.board = board_;
-    result.judgement = judge(verdict, *evaluation, *solution, room.has_value());
-    add_reach(result, now);
-    add_solution(result, now, *solution, *evaluation, parts.held_out);
-    if (room) {
-      add_datums(result, room->tie, (*surveyed)->survey);
-    }
-    add_stations(result, *aimed);
-    const auto before = earlier(context);
-    RAYSTEER_TRY(before);
-    if (*before) {
-      RAYSTEER_TRY(add_difference(result, now, **before, *aimed));
-    }
-    report(context, *solution, *evaluation, error, verdict);
-    report_cameras(context, *solution, *truth ? &(*truth)->rig : nullptr);
-    report_room(context, room);
-    report_reach(context, result);
-    print_difference(context, result);
+    const auto result = describe(context, *done);
+    RAYSTEER_TRY(result);
+    print_accuracy(context, done->solution, done->evaluation, error, done->verdict);
+    cameras_.report(context, done->solution, *truth ? &(*truth)->rig : nullptr);
+    print_room(context, done->room);
+    print_reach(context, *result);
+    print_difference(context, *result);
     if (context.has_out()) {
-      const exchange::RigMeta meta{.session = session_,
-                                   .board = board_,
-                                   .verdict = verdict,
-                                   .whitened_rms = solution->whitened_rms,
-                                   .held_out_median_px = evaluation->median_px,
-                                   .held_out_p95_px = evaluation->p95_px,
-                                   .held_out_median_mm = evaluation->median_mm,
-                                   .held_out_p95_mm = evaluation->p95_mm,
-                                   .looks = static_cast<int>(solution->looks.size()),
-                                   .survey = *surveyed ? (*surveyed)->survey.name : "",
-                                   .survey_id = *surveyed ? (*surveyed)->id : ""};
-      RAYSTEER_TRY(exchange::write_file(context.out() / "rig.toml", exchange::to_toml(final_solution, stated, meta)));
-      RAYSTEER_TRY(report::write_result(context.out(), result, context.json()));
+      RAYSTEER_TRY(exchange::write_file(context.out() / "rig.toml", rig_file(*done)));
+      RAYSTEER_TRY(report::write_result(context.out(), *result, context.json()));
     }
-    return verdict == "redo" ? ExitCode::kVerdictRedo : ExitCode::kDone;
+    return done->verdict == "redo" ? ExitCode::kVerdictRedo : ExitCode::kDone;
   }
 
  private:
   /// The room's survey, and where the session's looks show its datums.
   struct Surveyed {
-    proto::survey::Survey survey;
-    std::string id;
+    rig::SurveyFile file;
     std::vector<calib::datum::View> views;
   };
+
+  struct Done {
+    Solution solution;
+    Evaluation evaluation;
+    std::vector<Look> held_out;
+    std::string verdict;
+    std::optional<Surveyed> surveyed;
+    std::optional<rig::InRoom> room;  ///< with a survey
+
+    std::optional<exchange::RoomTie> tie() const {
+      return room ? std::optional(exchange::room_tie(room->rig, static_cast<int>(room->tie.misses.size()),
+                                                     room->tie.scale ? room->tie.scale->value : 1))
+                  : std::nullopt;
+    }
+    const Solution& final_solution() const { return room ? room->rig.solution : solution; }
+  };
+
+  /// From the session to a rig that was tried on the looks held out, and tied to the room where that is surveyed.
+  Result<Done> calibrate(Context& context, const session::Session& session, const proto::board::Board& board) const {
+    const auto drawing = rig::drawing_of(board);
+    RAYSTEER_TRY(drawing);
+    const auto cameras = cameras_.read(board, board_, session);
+    RAYSTEER_TRY(cameras);
+    auto surveyed = see_room(context, session);
+    RAYSTEER_TRY(surveyed);
+    auto gathered = gather(context, session, *cameras);
+    RAYSTEER_TRY(gathered);
+    Parts parts = split(std::move(gathered->observations.looks));
+    gathered->observations.looks = std::move(parts.solved);
+    const auto length = cameras_.find_length(context, session);
+    RAYSTEER_TRY(length);
+    const auto solving = context.stage("solving");
+    auto solution = cameras_.drawn() ? calib::steer::solve_without_board(gathered->observations, *drawing, *length)
+                                     : calib::steer::solve(gathered->observations, *drawing);
+    RAYSTEER_TRY(solution);
+    RAYSTEER_TRY(plane_.check(*gathered, *solution, *drawing));
+    RAYSTEER_TRY(Context::poll());
+    auto evaluation = calib::steer::evaluate(*solution, parts.held_out);
+    RAYSTEER_TRY(evaluation);
+    Done done{.solution = *std::move(solution),
+              .evaluation = *std::move(evaluation),
+              .held_out = std::move(parts.held_out),
+              .verdict = {},
+              .surveyed = *std::move(surveyed),
+              .room = {}};
+    done.verdict = rig_verdict(done.evaluation);
+    if (done.surveyed) {
+      auto tied = rig::tie_to_room(done.solution, done.surveyed->file.survey, done.surveyed->views);
+      RAYSTEER_TRY(tied);
+      done.room = *std::move(tied);
+    }
+    return done;
+  }
 
   /// No value without --survey. Before anything is decoded, so that a rig that moved is named at once.
   Result<std::optional<Surveyed>> see_room(Context& context, const session::Session& session) const {
     if (survey_.empty()) {
       return std::optional<Surveyed>();
     }
-    auto survey = rig::read_survey(survey_);
-    RAYSTEER_TRY(survey);
-    auto id = rig::survey_id(survey_);
-    RAYSTEER_TRY(id);
-    auto views = rig::see_datums(session, kDatumLooks, context.stage("finding datums"));
-    RAYSTEER_TRY(views);
-    return std::optional(Surveyed{*std::move(survey), *std::move(id), *std::move(views)});
-  }
-
-  /// Nobody gave the cameras' calibration.
-  bool is_drawn() const { return cameras_ == kDrawn; }
-
-  Result<calib::model::Rig> cameras(const proto::board::Board& board) const {
-    if (is_drawn()) {
-      return rig::cameras_of(board);
-    }
-    auto file = exchange::read_calibration(cameras_);
+    auto file = rig::read_survey(survey_);
     RAYSTEER_TRY(file);
-    return std::move(file->rig);
+    auto views = rig::see_datums(session, rig::kDatumLooks, context.stage("finding datums"));
+    RAYSTEER_TRY(views);
+    return std::optional(Surveyed{*std::move(file), *std::move(views)});
   }
 
-  Result<rig::GatherOptions> gather_options(Context& context, const session::Session& session,
-                                            const calib::model::Rig& cameras) const {
+  Result<rig::Gathered> gather(Context& context, const session::Session& session,
+                               const calib::model::Rig& cameras) const {
     rig::GatherOptions options;
-    options.cameras_drawn = is_drawn();
-    if (plane_.empty()) {
-      return options;
+    options.cameras_drawn = cameras_.drawn();
+    RAYSTEER_TRY(plane_.find(context, session, cameras, options));
+    auto gathered = rig::gather(session, cameras, options, context.stage("decoding looks"));
+    RAYSTEER_TRY(gathered);
+    for (const rig::MissedLook& missed : gathered->missed) {
+      context.note(fmt::format("look '{}' left out [{}]: {}", missed.name, to_string(missed.error.rcode),
+                               missed.error.message()));
     }
-    if (is_drawn()) {
-      return fail(RCode::kUsage, "--plane takes calibrated cameras: a board's pose cannot be told from drawn ones");
-    }
-    auto plane = rig::find_plane(session, cameras, plane_, context.stage("finding the plane"));
-    RAYSTEER_TRY(plane);
-    options.plane = *plane;
-    options.plane_look = plane_;
-    return options;
+    plane_.report(context, *gathered);
+    return gathered;
   }
 
-  /// What --baseline or --length says; no value without them.
-  Result<std::optional<rig::MeasuredLength>> known_length() const {
-    if (baseline_.empty() && length_.empty()) {
-      return std::optional<rig::MeasuredLength>();
+  /// All that the report shows.
+  Result<report::RigResult> describe(Context& context, const Done& done) const {
+    PlacedRig now = placed(done.solution, done.room, exchange::rig_id(done.final_solution(), done.tie()));
+    now.survey_id = done.surveyed ? done.surveyed->file.id : "";
+    const auto aimed = aim(now);
+    RAYSTEER_TRY(aimed);
+    report::RigResult result;
+    result.session = session_;
+    result.board = board_;
+    result.judgement = judge_rig(done.verdict, done.evaluation, done.solution, done.room.has_value());
+    add_reach(result, now);
+    add_solution(result, now, done.solution, done.evaluation, done.held_out);
+    if (done.room) {
+      add_datums(result, done.room->tie, done.surveyed->file.survey);
     }
-    if (!is_drawn() || (!baseline_.empty() && !length_.empty())) {
-      return fail(RCode::kUsage,
-                  "expected one of --baseline and --length, and only with '--cameras drawn': calibrated "
-                  "cameras know how long a metre is");
+    add_stations(result, *aimed);
+    const auto before = earlier(context);
+    RAYSTEER_TRY(before);
+    if (*before) {
+      RAYSTEER_TRY(add_difference(result, now, **before, *aimed));
+      if (now.tied && !(*before)->survey_id.empty() && (*before)->survey_id != now.survey_id) {
+        context.note("the survey changed since the earlier calibration: what the light moved by may be the datums");
+      }
     }
-    const auto length = length_.empty() ? rig::read_baseline(baseline_) : rig::read_length(length_);
-    RAYSTEER_TRY(length);
-    return std::optional(*length);
+    return result;
   }
 
-  /// The same, with its ends found in the session.
-  Result<std::optional<calib::steer::KnownLength>> found(Context& context, const session::Session& session,
-                                                         const std::optional<rig::MeasuredLength>& length) const {
-    if (!length) {
-      return std::optional<calib::steer::KnownLength>();
-    }
-    auto known = rig::find_length(session, *length, kDatumLooks, context.stage("finding the known length"));
-    RAYSTEER_TRY(known);
-    return std::optional(*std::move(known));
+  std::string rig_file(const Done& done) const {
+    return exchange::to_toml(done.final_solution(), done.tie(),
+                             {.session = session_,
+                              .board = board_,
+                              .verdict = done.verdict,
+                              .whitened_rms = done.solution.whitened_rms,
+                              .held_out_median_px = done.evaluation.median_px,
+                              .held_out_p95_px = done.evaluation.p95_px,
+                              .held_out_median_mm = done.evaluation.median_mm,
+                              .held_out_p95_mm = done.evaluation.p95_mm,
+                              .looks = static_cast<int>(done.solution.looks.size()),
+                              .survey = done.surveyed ? done.surveyed->file.survey.name : "",
+                              .survey_id = done.surveyed ? done.surveyed->file.id : ""});
   }
 
   /// Stations that were asked for.
@@ -326,149 +282,10 @@ class CalibrateRig : public Command {
     return std::optional(placed(*read));
   }
 
-  static report::Judgement judge(const std::string& verdict, const Evaluation& evaluation, const Solution& solution,
-                                 bool tied) {
-    report::Judgement judgement{.verdict = verdict,
-                                .summary = fmt::format("Looks that were not calibrated are hit within {:.2f} mm "
-                                                       "({:.2f} px), 95 %.",
-                                                       evaluation.p95_mm, evaluation.p95_px),
-                                .reasons = {},
-                                .advice = {}};
-    if (!tied) {
-      judgement.reasons.push_back("The rig is consistent with itself, but not tied to the room.");
-      judgement.advice.push_back("Survey four datums or more, and give --survey.");
-    }
-    if (verdict != "good") {
-      judgement.reasons.push_back(fmt::format("{:.1f} mm are asked for, 95 %.", kGoodMm));
-      judgement.advice.push_back("Take the looks that 'raysteer plan looks' chooses, with the mirror warmed up.");
-    }
-    if (!solution.off_drawing.empty()) {
-      judgement.reasons.push_back(fmt::format("{} numbers are further from the board file than its tolerances explain.",
-                                              solution.off_drawing.size()));
-      judgement.advice.push_back("Measure those parts and correct the board file: the next calibration starts nearer.");
-    }
-    return judgement;
-  }
-
-  static void report_reach(Context& context, const report::RigResult& result) {
-    if (result.reach.empty()) {
-      return;
-    }
-    context.json()["reach"] = {{"median_95_mm", result.reach_median_95_mm}, {"worst_95_mm", result.reach_worst_95_mm}};
-    context.print(
-        fmt::format("reach            sure to {:.2f} mm (95 %) over half of it, {:.2f} mm at its worst place, on {}\n",
-                    result.reach_median_95_mm, result.reach_worst_95_mm, result.floor));
-    for (const report::StationRow& station : result.stations) {
-      context.json()["stations"].push_back({{"name", station.name},
-                                            {"bound_95_mm", station.bound_95_mm},
-                                            {"tolerance_mm", station.tolerance_mm},
-                                            {"within", station.within}});
-      context.print(fmt::format("  {:<14} {:.2f} mm{}\n", station.name, station.bound_95_mm,
-                                station.within ? "" : fmt::format(" (allowed {:.1f})", station.tolerance_mm)));
-    }
-  }
-
-  static exchange::RoomTie tie_of(const rig::InRoom& room) {
-    return exchange::room_tie(room.rig, static_cast<int>(room.tie.misses.size()),
-                              room.tie.scale ? room.tie.scale->value : 1);
-  }
-
-  static void report_room(Context& context, const std::optional<rig::InRoom>& room) {
-    context.json()["tied_to_room"] = room.has_value();
-    if (!room) {
-      context.print("room             consistent with itself, not tied to the room: give --survey\n");
-      return;
-    }
-    Json& json = context.json()["room"];
-    double worst = 0;
-    for (const calib::datum::Miss& miss : room->tie.misses) {
-      json["datums"].push_back({{"name", miss.name}, {"miss_mm", 1e3 * miss.miss_m.norm()}});
-      worst = std::max(worst, 1e3 * miss.miss_m.norm());
-    }
-    context.print(fmt::format("room             tied by {} datums, none off by more than {:.2f} mm\n",
-                              room->tie.misses.size(), worst));
-    if (room->tie.scale) {
-      json["scale"] = room->tie.scale->value;
-      json["scale_sigma"] = room->tie.scale->sigma;
-      context.print(fmt::format(
-          "scale            {:.1f} of 1000.0 mm by {} (+- {:.1f})\n", 1000 * room->tie.scale->value,
-          room->tie.scale->by_lengths ? "known lengths" : "surveyed places", 1000 * room->tie.scale->sigma));
-    }
-  }
-
-  static void report(Context& context, const Solution& solution, const Evaluation& evaluation,
-                     const std::optional<rig::TruthError>& truth, const std::string& verdict) {
-    Json& json = context.json();
-    json["verdict"] = verdict;
-    json["looks"] = solution.looks.size();
-    json["held_out_looks"] = evaluation.looks.size();
-    json["held_out"] = accuracy(evaluation.median_px, evaluation.p95_px, evaluation.median_mm, evaluation.p95_mm);
-    json["held_out"]["raw_median_px"] = evaluation.raw_median_px;
-    json["held_out"]["raw_p95_px"] = evaluation.raw_p95_px;
-    json["held_out"]["predicted_rms_px"] = evaluation.predicted_rms_px;
-    json["whitened_rms"] = solution.whitened_rms;
-    json["repeatability_urad"] = 1e6 * solution.repeatability_rad;
-    json["points"] = {{"used", solution.used}, {"dropped", solution.dropped}};
-    if (truth) {
-      json["truth"] = accuracy(truth->median_px, truth->p95_px, truth->median_mm, truth->p95_mm);
-    }
-    context.print(fmt::format("{}: looks that were not calibrated are hit within {:.2f} mm ({:.2f} px), 95 %\n",
-                              verdict, evaluation.p95_mm, evaluation.p95_px));
-    context.print("\n");
-    context.print(fmt::format("held out         {} looks: {:.3f} px median, {:.3f} px (95 %); {:.3f} / {:.3f} mm\n",
-                              evaluation.looks.size(), evaluation.median_px, evaluation.p95_px, evaluation.median_mm,
-                              evaluation.p95_mm));
-    context.print(fmt::format("solved           {} looks, {} points ({} left out), whitened RMS {:.3f}\n",
-                              solution.looks.size(), solution.used, solution.dropped, solution.whitened_rms));
-    context.print(fmt::format("mirror           repeats within {:.0f} urad ({})\n", 1e6 * solution.repeatability_rad,
-                              solution.repeatability_estimated ? "estimated" : "as drawn"));
-    for (const calib::steer::OffDrawing& off : solution.off_drawing) {
-      context.print(fmt::format("off its drawing  {} by {:.1f} sigma\n", off.parameter, off.sigmas));
-    }
-    if (truth) {
-      context.print(fmt::format("error against the truth: {:.3f} px median, {:.3f} px (95 %); {:.3f} / {:.3f} mm\n",
-                                truth->median_px, truth->p95_px, truth->median_mm, truth->p95_mm));
-    }
-  }
-
-  /// What the cameras came out as, where they were not given.
-  void report_cameras(Context& context, const Solution& solution, const calib::model::Rig* truth) const {
-    Json& json = context.json();
-    json["cameras"]["drawn"] = is_drawn();
-    if (!is_drawn()) {
-      return;
-    }
-    double sigma = 0;
-    double error = 0;
-    for (std::size_t i = 0; i < solution.cameras.devices.size(); ++i) {
-      const double f = solution.cameras.devices[i].camera.fx;
-      const int at = solution.cameras.offset(i);
-      sigma = std::max(sigma, std::sqrt(solution.covariance(at, at)) / f);
-      error = truth != nullptr ? std::max(error, std::abs(f / truth->devices[i].camera.fx - 1)) : 0;
-    }
-    const double baseline = solution.cameras.devices[1].T_device_rig.t.norm();
-    json["cameras"]["focal_sigma"] = sigma;
-    json["cameras"]["baseline_m"] = baseline;
-    json["cameras"]["scale_by"] = !length_.empty() ? "length" : !baseline_.empty() ? "baseline" : "drawing";
-    context.print(
-        fmt::format("cameras          solved from the drawing: focal length +- {:.3f} %, {:.1f} mm apart; "
-                    "metres by {}\n",
-                    100 * sigma, 1e3 * baseline,
-                    !length_.empty()     ? "the known length"
-                    : !baseline_.empty() ? "the measured baseline"
-                                         : "the drawn baseline: give --length or --baseline for true ones"));
-    if (truth != nullptr) {
-      json["truth"]["focal_error"] = error;
-      context.print(fmt::format("focal lengths against the truth: {:.3f} %\n", 100 * error));
-    }
-  }
-
   std::string session_;
-  std::string cameras_;
+  RigCameras cameras_;
   std::string board_;
-  std::string plane_;
-  std::string baseline_;
-  std::string length_;
+  RigPlane plane_;
   std::string survey_;
   std::string previous_;
   std::string stations_;

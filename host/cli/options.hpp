@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,7 +12,9 @@ namespace raysteer::host::cli {
 
 /// One argument or option and the variable it fills. The variable's value at declaration is the default.
 struct Option {
-  using Target = std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*>;
+  /// An optional text tells one that is empty from none.
+  using Target =
+      std::variant<bool*, int*, double*, std::string*, std::optional<std::string>*, std::vector<std::string>*>;
 
   std::string name;   ///< "--calibration", "-v,--verbose"; for an argument its word in the help: "SESSION"
   std::string value;  ///< what stands for the value: "FILE", "DIR", "N"; empty for a flag

@@ -144,7 +144,8 @@ PlacedRig placed(const exchange::RigCalibration& calibration) {
   const auto room = calibration.in_room();
   return {.rig = room ? *room : calib::assess::in_own_frame(calibration.solution),
           .tied = room.has_value(),
-          .id = calibration.id};
+          .id = calibration.id,
+          .survey_id = calibration.meta.survey_id};
 }
 
 PlacedRig placed(const calib::steer::Solution& solution, const std::optional<rig::InRoom>& room,

@@ -22,6 +22,7 @@ struct PlacedRig {
   calib::steer::InRoom rig;
   bool tied = false;
   std::string id;
+  std::string survey_id{};  ///< of the survey that tied it; empty where it is not told
 };
 PlacedRig placed(const exchange::RigCalibration& calibration);
 PlacedRig placed(const calib::steer::Solution& solution, const std::optional<rig::InRoom>& room, const std::string& id);

@@ -65,24 +65,6 @@ Result<std::vector<LitPoint>> see_with_both(const Session& session, int look, co
   return points;
 }
 
-/// What one eye saw of look `index` of the observations.
-struct OneEyedLook {
-  std::size_t index = 0;
-  OneEye seen;
-};
-
-void put_on_plane(Gathered& gathered, const std::vector<OneEyedLook>& looks, const GatherOptions& options) {
-  std::size_t together = 0;
-  for (const OneEyedLook& look : looks) {
-    together += look.seen.x.size();
-  }
-  for (const OneEyedLook& look : looks) {
-    Look& whole = gathered.observations.looks[look.index];
-    whole.points = on_plane(look.seen, gathered.observations.cameras, *options.plane, together);
-    gathered.one_eyed.push_back(whole.name);
-  }
-}
-
 }  // namespace
 
 Status check_cameras(const Session& session, const calib::model::Rig& cameras) {
@@ -95,9 +77,7 @@ Status check_cameras(const Session& session, const calib::model::Rig& cameras) {
     return devices.error();
   }
   if (devices->left != 0 || devices->right != 1 || cameras.devices.size() != 2) {
-    return fail(RCode::kCalibrationMismatch,
-                "expected a calibration of the session's two cameras alone, in their order; make one with "
-                "'raysteer calibrate cameras'");
+    return fail(RCode::kCalibrationMismatch, "expected the session's two cameras alone, in their order");
   }
   return ok();
 }
@@ -129,8 +109,8 @@ Result<Gathered> gather(const Session& session, const calib::model::Rig& cameras
       return (static_cast<double>(k) + done) / static_cast<double>(numbers.size());
     };
     const auto& named = session.manifest().looks[static_cast<std::size_t>(numbers[k])];
-    auto points = see_with_both(session, numbers[k], options.cameras_drawn ? nullptr : &*views, options,
-                                [&](double done) { return !tick || tick(part(done)); });
+    const Tick step = [&](double done) { return !tick || tick(part(done)); };
+    auto points = see_with_both(session, numbers[k], options.cameras_drawn ? nullptr : &*views, options, step);
     if (!points && points.error().rcode == RCode::kCancelled) {
       return std::move(points).error();
     }
@@ -140,15 +120,25 @@ Result<Gathered> gather(const Session& session, const calib::model::Rig& cameras
               .points = {}};
     if (points) {
       look.points = *std::move(points);
-    } else if (auto seen = options.plane ? see_with_one_eye(session, numbers[k], options) : points.error()) {
-      one_eyed.push_back({gathered.observations.looks.size(), *std::move(seen)});
-    } else {
+    } else if (!options.plane) {
       gathered.missed.push_back({named.name, std::move(points).error()});
       continue;
+    } else {
+      auto seen = see_with_one_eye(session, numbers[k], options, step);
+      if (!seen && seen.error().rcode == RCode::kCancelled) {
+        return std::move(seen).error();
+      }
+      if (!seen) {
+        gathered.missed.push_back({named.name, std::move(seen).error()});
+        continue;
+      }
+      one_eyed.push_back({gathered.observations.looks.size(), *std::move(seen)});
     }
     gathered.observations.looks.push_back(std::move(look));
   }
-  put_on_plane(gathered, one_eyed, options);
+  if (options.plane) {
+    put_on_plane(gathered, one_eyed, *options.plane);
+  }
   if (gathered.observations.looks.empty()) {
     return fail(RCode::kTooFewLooks, gathered.missed.empty()
                                          ? "the session has no looks"

@@ -1,7 +1,8 @@
 #include "host/rig/known_length.hpp"
 
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
+#include <system_error>
 #include <vector>
 
 #include "calib/datum/steady.hpp"
@@ -12,27 +13,28 @@ namespace {
 
 constexpr double kSigmaM = 0.5e-3;  // as good as people read a tape
 
-/// All of `text` as a number above zero.
-std::optional<double> number(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == 0 && std::isfinite(value) && value > 0 ? std::optional(value) : std::nullopt;
+/// All of `text` as a number.
+template <class Number>
+std::optional<Number> all_of(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-std::optional<unsigned> code(const std::string& text) {
-  const bool digits = !text.empty() && text.size() < 9 && text.find_first_not_of("0123456789") == std::string::npos;
-  return digits ? std::optional(static_cast<unsigned>(std::strtoul(text.c_str(), nullptr, 10))) : std::nullopt;
+std::optional<double> length(std::string_view text) {
+  const auto metres = all_of<double>(text);
+  return metres && std::isfinite(*metres) && *metres > 0 ? metres : std::nullopt;
 }
 
 }  // namespace
 
-Result<MeasuredLength> read_length(const std::string& text) {
+Result<MeasuredLength> read_length(std::string_view text) {
   const std::size_t dash = text.find('-');
   const std::size_t equals = text.find('=');
   if (dash != std::string::npos && equals != std::string::npos && dash < equals) {
-    const auto from = code(text.substr(0, dash));
-    const auto to = code(text.substr(dash + 1, equals - dash - 1));
-    const auto metres = number(text.substr(equals + 1));
+    const auto from = all_of<unsigned>(text.substr(0, dash));
+    const auto to = all_of<unsigned>(text.substr(dash + 1, equals - dash - 1));
+    const auto metres = length(text.substr(equals + 1));
     if (from && to && metres && *from != *to) {
       return MeasuredLength{.metres = *metres, .datums = {{*from, *to}}};
     }
@@ -40,13 +42,14 @@ Result<MeasuredLength> read_length(const std::string& text) {
   return fail(RCode::kUsage,
               "--length: expected the codes of two datums and the metres between them, as in "
               "'3-7=2.514', got '" +
-                  text + "'");
+                  std::string(text) + "'");
 }
 
-Result<MeasuredLength> read_baseline(const std::string& text) {
-  const auto metres = number(text);
+Result<MeasuredLength> read_baseline(std::string_view text) {
+  const auto metres = length(text);
   if (!metres) {
-    return fail(RCode::kUsage, "--baseline: expected metres above zero, as in '0.512', got '" + text + "'");
+    return fail(RCode::kUsage,
+                "--baseline: expected metres above zero, as in '0.512', got '" + std::string(text) + "'");
   }
   return MeasuredLength{.metres = *metres};
 }

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <optional>
-#include <string>
+#include <string_view>
 
 #include "calib/steer/without_board.hpp"
 #include "hal/base/result.hpp"
@@ -18,11 +18,11 @@ struct MeasuredLength {
   std::optional<std::array<unsigned, 2>> datums{};  ///< their codes; no value: from lens to lens
 };
 
-/// "3-7=2.514": between the datums coded 3 and 7. Errors: kUsage.
-Result<MeasuredLength> read_length(const std::string& text);
+/// "3-7=2.514": between the datums coded 3 and 7, decimal and without blanks. Errors: kUsage.
+Result<MeasuredLength> read_length(std::string_view text);
 
 /// "0.512": from lens to lens. Errors: kUsage.
-Result<MeasuredLength> read_baseline(const std::string& text);
+Result<MeasuredLength> read_baseline(std::string_view text);
 
 /// The length with its ends as both eyes see them in the black frames of at most `most_looks` looks; it counts as good
 /// to half a millimetre. Errors: kDatumsMissing (which datum), those of see_datums().

@@ -1,7 +1,6 @@
 #include "host/rig/known_plane.hpp"
 
-#include <algorithm>
-#include <optional>
+#include <cstddef>
 #include <utility>
 
 #include "calib/look/board_plane.hpp"
@@ -16,8 +15,21 @@ namespace {
 using calib::scene::Match;
 using session::Session;
 
-Result<OneEye> see(const Session& session, int look, int eye, const GatherOptions& options) {
-  auto decoded = scan::decode_look(session, eye, look);
+/// Two eyes fail for two reasons. The first one's code stands for both.
+Error both(Error left, const Error& right) {
+  left.note += "; " + right.message();
+  return left;
+}
+
+Status enough(std::size_t points) {
+  return points >= kFewestPoints
+             ? ok()
+             : fail(RCode::kTooFewMatches, std::to_string(points) + " points of one eye, at least " +
+                                               std::to_string(kFewestPoints) + " are needed");
+}
+
+Result<OneEye> see(const Session& session, int look, int eye, const GatherOptions& options, const Tick& tick) {
+  auto decoded = scan::decode_look(session, eye, look, {}, tick);
   RAYSTEER_TRY(decoded);
   const PatternSequence& sequence = session.manifest().sequence;
   std::vector<scan::DecodedLook> alone;
@@ -40,42 +52,43 @@ Result<OneEye> see(const Session& session, int look, int eye, const GatherOption
 
 Result<calib::steer::KnownPlane> find_plane(const Session& session, const calib::model::Rig& cameras,
                                             const std::string& look, const Tick& tick) {
-  const auto& manifest = session.manifest();
-  if (std::ranges::find(manifest.looks, look, &proto::session::Look::name) == manifest.looks.end() ||
-      manifest.target_of(look) == nullptr) {
+  RAYSTEER_TRY(check_cameras(session, cameras));
+  const auto number = session.look_number(look);
+  if (!number) {
     return fail(RCode::kMissingKey, "--plane " + look + ": expected a look of the session that shows its [target]");
   }
-  const auto gathered = calibrate::gather_cameras(session, tick);
-  RAYSTEER_TRY(gathered);
-  const auto& views = gathered->observations.views;
-  const auto view = std::ranges::find(views, look, &calib::solve::View::name);
+  const auto board = calibrate::find_board(session, *number, tick);
+  RAYSTEER_TRY(board);
   std::vector<calib::look::Sight> sights;
-  for (std::size_t eye = 0; view != views.end() && eye < cameras.devices.size(); ++eye) {
-    if (!view->corners[eye].empty()) {
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    if (const auto& found = board->cameras[eye]) {
       const calib::model::Device& device = cameras.devices[eye];
       sights.push_back(
-          {.camera = device.camera, .T_camera_rig = device.T_device_rig, .corners = view->corners[eye], .discs = {}});
+          {.camera = device.camera, .T_camera_rig = device.T_device_rig, .corners = found->corners, .discs = {}});
     }
   }
   if (sights.empty()) {
-    return fail(RCode::kTargetNotFound, "no eye sees the board in look '" + look + "'");
+    return both(board->cameras[0].error(), board->cameras[1].error());
   }
-  const auto plane = calib::look::board_plane(gathered->observations.target, sights);
+  const auto plane = calib::look::board_plane(board->target, sights);
   RAYSTEER_TRY(plane);
   return calib::steer::KnownPlane{plane->T_rig_plane, plane->covariance};
 }
 
-Result<OneEye> see_with_one_eye(const Session& session, int look, const GatherOptions& options) {
-  auto left = see(session, look, 0, options);
-  auto right = see(session, look, 1, options);
-  if (!left && !right) {
+Result<OneEye> see_with_one_eye(const Session& session, int look, const GatherOptions& options, const Tick& tick) {
+  auto left = see(session, look, 0, options, [&](double done) { return !tick || tick(0.5 * done); });
+  if (!left && left.error().rcode == RCode::kCancelled) {
     return left;
   }
-  auto& better = !left || (right && right->x.size() > left->x.size()) ? right : left;
-  if (better->x.size() < kFewestPoints) {
-    return fail(RCode::kTooFewMatches, std::to_string(better->x.size()) + " points of one eye, at least " +
-                                           std::to_string(kFewestPoints) + " are needed");
+  auto right = see(session, look, 1, options, [&](double done) { return !tick || tick(0.5 + 0.5 * done); });
+  if (!right && right.error().rcode == RCode::kCancelled) {
+    return right;
   }
+  if (!left && !right) {
+    return both(left.error(), right.error());
+  }
+  auto& better = !left || (right && right->x.size() > left->x.size()) ? right : left;
+  RAYSTEER_TRY(enough(better->x.size()));
   return std::move(better);
 }
 
@@ -89,6 +102,27 @@ std::vector<calib::steer::LitPoint> on_plane(const OneEye& seen, const calib::mo
     }
   }
   return points;
+}
+
+void put_on_plane(Gathered& gathered, const std::vector<OneEyedLook>& looks, const calib::steer::KnownPlane& plane) {
+  std::size_t together = 0;
+  for (const OneEyedLook& look : looks) {
+    together += look.seen.x.size();
+  }
+  auto& all = gathered.observations.looks;
+  for (const OneEyedLook& look : looks) {
+    all[look.index].points = on_plane(look.seen, gathered.observations.cameras, plane, together);
+  }
+  // From the last on: the places of those before stay what they were.
+  for (auto look = looks.rbegin(); look != looks.rend(); ++look) {
+    const auto whole = all.begin() + static_cast<std::ptrdiff_t>(look->index);
+    if (const Status hit = enough(whole->points.size())) {
+      gathered.one_eyed.insert(gathered.one_eyed.begin(), whole->name);
+    } else {
+      gathered.missed.push_back({whole->name, with_context(hit.error(), "where its light meets the plane")});
+      all.erase(whole);
+    }
+  }
 }
 
 }  // namespace raysteer::host::rig

@@ -1,5 +1,8 @@
 #include "host/rig/read_files.hpp"
 
+#include <string_view>
+#include <utility>
+
 #include "host/exchange/rig_file.hpp"
 #include "host/exchange/write_file.hpp"
 #include "host/rig/drawing.hpp"
@@ -23,13 +26,12 @@ Result<proto::board::Board> read_board(const std::string& name) {
   return read("boards", name, proto::board::read_board);
 }
 
-Result<proto::survey::Survey> read_survey(const std::string& name) {
-  return read("surveys", name, proto::survey::read_survey);
-}
-
-Result<std::string> survey_id(const std::string& name) {
-  return read("surveys", name,
-              [](std::string_view text, std::string_view) { return Result<std::string>(exchange::survey_id(text)); });
+Result<SurveyFile> read_survey(const std::string& name) {
+  return read("surveys", name, [](std::string_view text, const std::string& file) -> Result<SurveyFile> {
+    auto survey = proto::survey::read_survey(text, file);
+    RAYSTEER_TRY(survey);
+    return SurveyFile{*std::move(survey), exchange::survey_id(text)};
+  });
 }
 
 Result<proto::stations::Stations> read_stations(const std::string& name) {

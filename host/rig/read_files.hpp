@@ -11,11 +11,14 @@
 
 namespace raysteer::host::rig {
 
+struct SurveyFile {
+  proto::survey::Survey survey;
+  std::string id;  ///< exchange::survey_id() of the file's text
+};
+
 /// Errors: kFileMissing, kFileUnreadable, and those of the reader.
 Result<proto::board::Board> read_board(const std::string& name);
-Result<proto::survey::Survey> read_survey(const std::string& name);
-/// exchange::survey_id() of the file.
-Result<std::string> survey_id(const std::string& name);
+Result<SurveyFile> read_survey(const std::string& name);
 Result<proto::stations::Stations> read_stations(const std::string& name);
 /// The board's drawing; also errors of drawing_of().
 Result<calib::steer::Drawing> read_drawing(const std::string& name);

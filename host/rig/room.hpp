@@ -16,6 +16,9 @@
 
 namespace raysteer::host::rig {
 
+/// The rig stands still: so many looks at its datums are enough.
+inline constexpr int kDatumLooks = 8;
+
 /// The datums that both eyes see in the black frames of at most `most_looks` looks, evenly spread over the session from
 /// its first look to its last. Errors: kCameraCount; kBadSequence (no black frame); those of Session::load; kRigMoved
 /// (they are not where other looks show them); kCancelled.

@@ -28,6 +28,7 @@ struct IdealOptions {
   bool relief = true;          ///< boxes up to 0.9 m on the floor, otherwise the bare floor
   double box_height = 1;       ///< share of the boxes' height
   bool drawn_cameras = false;  ///< cameras known only as drawn; else as calibrated with a board
+  bool known_ends = false;     ///< drawn cameras: the known length lies between two places on the floor, not the eyes
 };
 
 /// What the camera calibration is off by, one standard deviation each; it is stated as the cameras' covariance.

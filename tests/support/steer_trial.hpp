@@ -99,9 +99,7 @@ class SteerTrial {
     std::erase_if(observations.looks, [](const calib::steer::Look& look) { return look.points.size() < 12; });
     if (options.drawn_cameras) {
       observations.cameras = board.drawn.cameras;
-      const calib::steer::KnownLength baseline{
-          .metres = rig_.cameras.devices[1].T_device_rig.t.norm(), .sigma_m = 0.5e-3, .ends = {}};
-      solution_.emplace(calib::steer::solve_without_board(observations, board.drawn.drawing, baseline, solver));
+      solution_.emplace(calib::steer::solve_without_board(observations, board.drawn.drawing, known_length(), solver));
     } else {
       solution_.emplace(calib::steer::solve(observations, board.drawn.drawing, solver));
     }
@@ -134,6 +132,10 @@ class SteerTrial {
   }
   std::optional<calib::steer::EyePoint> eye_point(const Eigen::Vector3d& p, double noise_px, Noise& noise,
                                                   const calib::model::Rig& cameras) const {
+    return eye_point(p, noise_px, noise, cameras, by_z_);
+  }
+  std::optional<calib::steer::EyePoint> eye_point(const Eigen::Vector3d& p, double noise_px, Noise& noise,
+                                                  const calib::model::Rig& cameras, const Eigen::MatrixXd& by_z) const {
     calib::steer::LitPoint point{.x = Eigen::Vector2d::Zero(), .q = {}, .cov_x = {}, .cov_q = {}};
     point.cov_x.setZero();
     for (std::size_t eye = 0; eye < 2; ++eye) {
@@ -144,7 +146,7 @@ class SteerTrial {
       point.q[eye] = *q + ideal::normals(noise, noise_px);
       point.cov_q[eye] = std::pow(std::max(noise_px, 0.01), 2) * Eigen::Matrix2d::Identity();
     }
-    return calib::steer::Eyes(cameras, by_z_).see(point);
+    return calib::steer::Eyes(cameras, by_z).see(point);
   }
 
   /// Dots over the panel as the rig would see them with the mirror at `angles`.
@@ -211,11 +213,67 @@ class SteerTrial {
     return (board_.least_rad + board_.most_rad) / 2;
   }
 
+  /// What the solved cameras miss in a length on the floor, relative, and the same in sigmas of their covariance.
+  struct LengthMiss {
+    double relative = 0, sigmas = 0;
+  };
+  LengthMiss length_miss() const {
+    Noise noise(seed_, 0x1e47);
+    const std::vector<Eigen::Vector3d> places = two_places(noise);
+    const Eigen::MatrixXd by_z = calib::steer::camera_prior((*solution_)->cameras);
+    const auto a = eye_point(places[0], 0, noise, (*solution_)->cameras, by_z);
+    const auto b = eye_point(places[1], 0, noise, (*solution_)->cameras, by_z);
+    if (!a || !b) {
+      return {.relative = 1, .sigmas = 1e3};
+    }
+    const double truth = (places[1] - places[0]).norm();
+    const double error = (b->p - a->p).norm() - truth;
+    const double sigma = ((b->p - a->p).normalized().transpose() * (b->p_by_z - a->p_by_z)).norm();
+    return {.relative = error / truth, .sigmas = error / sigma};
+  }
+
   const PlannedBoard& board() const { return board_; }
   const IdealOptions& options() const { return options_; }
   std::uint64_t seed() const { return seed_; }
 
  private:
+  /// On the floor, at least a metre apart, where both eyes see them.
+  std::vector<Eigen::Vector3d> two_places(Noise& noise) const {
+    std::vector<Eigen::Vector3d> places;
+    while (places.size() < 2) {
+      const double x = noise.uniform(-3, 3);
+      const double y = noise.uniform(-2, 2);
+      const Eigen::Vector3d place(x, y, kFloorDepth);
+      if (seen(place) && (places.empty() || (place - places[0]).norm() > 1)) {
+        places.push_back(place);
+      }
+    }
+    return places;
+  }
+
+  /// As somebody measured it, to half a millimetre.
+  calib::steer::KnownLength known_length() const {
+    Noise noise(seed_, 0x1e46);
+    constexpr double kSigma = 0.5e-3;
+    constexpr double kEndPx = 0.05;
+    const double measured_wrong = kSigma * noise.normal();
+    if (!options_.known_ends) {
+      return {.metres = rig_.cameras.devices[1].T_device_rig.t.norm() + measured_wrong, .sigma_m = kSigma, .ends = {}};
+    }
+    const std::vector<Eigen::Vector3d> places = two_places(noise);
+    std::array<calib::steer::LitPoint, 2> ends;
+    for (std::size_t end = 0; end < 2; ++end) {
+      ends[end].x.setZero();
+      ends[end].cov_x.setZero();
+      for (std::size_t eye = 0; eye < 2; ++eye) {
+        ends[end].q[eye] = *rig_.truth.rig.cameras[eye].project(places[end]) + ideal::normals(noise, kEndPx);
+        ends[end].cov_q[eye] = kEndPx * kEndPx * Eigen::Matrix2d::Identity();
+      }
+    }
+    return {
+        .metres = (places[1] - places[0]).norm() + measured_wrong, .sigma_m = kSigma, .ends = ends, .ends_off_px = 0};
+  }
+
   Misses at_random(int looks, int dot_count) const {
     Misses misses;
     Noise noise(seed_, 0x7e57, static_cast<std::uint64_t>(dot_count));

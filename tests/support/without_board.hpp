@@ -29,6 +29,9 @@ struct WithoutBoard {
   std::vector<double> projector_focal;   ///< of each rig
   std::vector<double> focal_normalised;  ///< of each camera: error over its stated sigma
   std::vector<double> scale;             ///< of each rig: distance between the eyes, relative
+  std::vector<double> scale_normalised;  ///< of each rig: its error over its stated sigma
+  std::vector<double> length;            ///< of each rig: a length on the floor as the solved cameras see it, relative
+  std::vector<double> length_normalised;
   Misses unseen;
 
   int refusals(const std::string& code) const {
@@ -44,7 +47,7 @@ struct WithoutBoard {
   }
 };
 
-/// Rig i has seed + i, whatever the number of threads. The distance between the eyes is known to half a millimetre.
+/// Rig i has seed + i, whatever the number of threads. A length is known to half a millimetre (IdealOptions).
 inline WithoutBoard many_without_board(const PlannedBoard& board, std::uint64_t seed,
                                        const WithoutBoardOptions& options) {
   std::vector<WithoutBoard> all(static_cast<std::size_t>(options.rigs));
@@ -68,9 +71,14 @@ inline WithoutBoard many_without_board(const PlannedBoard& board, std::uint64_t 
         one.focal_normalised.push_back(error * f / std::sqrt(solution.covariance(at, at)));
       }
       one.projector_focal = {std::abs(solution.projector.lens.fx / trial.rig().projector.lens.fx - 1)};
-      one.scale = {std::abs(solution.cameras.devices[1].T_device_rig.t.norm() /
-                                trial.rig().cameras.devices[1].T_device_rig.t.norm() -
-                            1)};
+      const Eigen::Vector3d& t = solution.cameras.devices[1].T_device_rig.t;
+      const double scale_error = t.norm() / trial.rig().cameras.devices[1].T_device_rig.t.norm() - 1;
+      const Eigen::Matrix3d of_t = solution.cameras.covariance.bottomRightCorner<3, 3>();
+      one.scale = {std::abs(scale_error)};
+      one.scale_normalised = {scale_error * t.squaredNorm() / std::sqrt(t.dot(of_t * t))};
+      const SteerTrial::LengthMiss miss = trial.length_miss();
+      one.length = {std::abs(miss.relative)};
+      one.length_normalised = {miss.sigmas};
       one.unseen = trial.unseen(options.unseen_looks);
     }
   };
@@ -93,6 +101,9 @@ inline WithoutBoard many_without_board(const PlannedBoard& board, std::uint64_t 
     append(many.projector_focal, one.projector_focal);
     append(many.focal_normalised, one.focal_normalised);
     append(many.scale, one.scale);
+    append(many.scale_normalised, one.scale_normalised);
+    append(many.length, one.length);
+    append(many.length_normalised, one.length_normalised);
     many.unseen.add(one.unseen);
   }
   return many;

@@ -139,6 +139,42 @@ TEST_F(BadRig, a_session_that_looks_at_nothing_of_it_is_refused) {
   EXPECT_TRUE(fs::is_empty(results()));
 }
 
+TEST_F(BadRig, a_calibration_of_more_than_the_two_cameras_is_refused_before_a_board_is_looked_for) {
+  // Left, right, and the projector: one device more than the session has cameras.
+  expect_refused(run({"calibrate", "rig", cameras_session().string(), "--cameras", true_calibration().string(),
+                      "--board", "mock-small", "--plane", "view_00"}),
+                 RCode::kCalibrationMismatch);
+}
+
+TEST_F(BadRig, cameras_that_a_board_file_draws_otherwise_are_looked_for_in_that_file) {
+  const Outcome outcome =
+      run({"calibrate", "rig", cameras_session().string(), "--cameras", "drawn", "--board", "mock-small-head"});
+  expect_refused(outcome, RCode::kCalibrationMismatch);
+  EXPECT_NE(outcome.printed.find("'mock-small-head'"), std::string::npos) << outcome.printed;
+  EXPECT_EQ(outcome.printed.find("calibrate cameras"), std::string::npos) << outcome.printed;
+}
+
+// The session is one that could be opened: nothing else is wrong.
+TEST_F(BadRig, lengths_that_are_none_are_told_before_the_session_is_opened) {
+  const auto with = [&](const std::string& cameras, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"calibrate", "rig",       scan_session().string(), "--cameras", cameras,
+                                   "--board",   "mock-small"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 2) << more[1];
+    expect_refused(outcome, RCode::kUsage);
+  };
+  for (const char* length : {"3-7", "3=2.5", "3-3=2.5", "a-7=2", "3-7=0", "3-7=nan", "3-7=0x1p3", ""}) {
+    with("drawn", {"--length", length});
+  }
+  for (const char* baseline : {"0", "-0.5", "half", "nan", "0.5 m", ""}) {
+    with("drawn", {"--baseline", baseline});
+  }
+  with("drawn", {"--baseline", "0.5", "--length", "3-7=2.5"});
+  with("cameras", {"--baseline", "0.5"});
+  with("cameras", {"--length", "3-7=2.5"});
+}
+
 TEST_F(BadRig, reports_compare_rigs_with_rigs) {
   const fs::path good = rig(true);
   const Outcome tables = run({"bake", "--rig", good.string(), "--stations", stations().string()});

@@ -72,6 +72,23 @@ TEST(PlaneOrDepth, a_tenth_of_the_points_off_the_plane_is_depth) {
   }
 }
 
+// A wild match is off the line of its ray too, and says neither.
+TEST(PlaneOrDepth, wild_matches_are_no_depth) {
+  const model::Pose T_b_a{model::rotation_by({0.02, -0.14, 0.01}), {-0.5, 0, 0.015}};
+  const Eigen::Matrix3d F = fundamental(T_b_a.rotation(), T_b_a.t);
+  int flat = 0;
+  for (int i = 0; i < kSeeds; ++i) {
+    const std::uint64_t seed = support::seed() + static_cast<std::uint64_t>(i);
+    Noise noise(seed, 0x311d);
+    auto pairs = views(seed, 0, T_b_a);
+    for (int k = 0; k < 3 * kPairs / 100; ++k) {
+      pairs[static_cast<std::size_t>(k)].b += support::ideal::normals(noise, 300 * kSigma);
+    }
+    flat += plane_or_depth(pairs, F).flat() ? 1 : 0;
+  }
+  EXPECT_GE(flat, kSeeds * 8 / 10);  // of six one falls onto its line by chance in a rig of twelve
+}
+
 TEST(PlaneOrDepth, a_turning_camera_sees_no_depth) { EXPECT_GE(flat(0, 1e-9), kSeeds - 2); }
 
 class DepthOf : public testing::TestWithParam<const char*> {
